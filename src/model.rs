@@ -96,6 +96,14 @@ impl Model {
         self.parts.iter().any(|part| part.has_memory())
     }
 
+    /// Where parts, joints and supports act in a point.
+    pub fn points(&self) -> impl Iterator<Item = Place> {
+        let parts = self.parts.iter().filter_map(|part| part.point());
+        parts
+            .chain(self.joints.iter().flat_map(Joint::places))
+            .chain(self.supports.iter().map(|support| support.at))
+    }
+
     /// The arc lengths \[m\] along a beam at which there must be a node and supports of shape
     /// functions must end: at joints, where a support or a part transmits a couple, and where the
     /// section jumps or has a corner, since the curvature or the strain jumps there or nearly does. A concentrated force makes only the slope of the curvature jump,

@@ -14,6 +14,8 @@ const CONTRACTION: f64 = 15.0;
 const CONTRACTION_OF_MOTION: f64 = 10.0;
 /// … of beams with contacts, which begin and end within cells …
 const CONTRACTION_OF_CONTACT: f64 = 6.0;
+/// … of strings with a kink within them, which continuous tangents round off …
+const CONTRACTION_OF_KINK: f64 = 2.0;
 /// … of all results of a method of second order …
 const CONTRACTION_OF_SECOND_ORDER: f64 = 4.0;
 /// … of curvatures and section forces, of which the largest error on a beam counts: at loads and
@@ -192,6 +194,12 @@ impl Runner<'_, '_> {
     /// Factors by which errors fall from a coarse run to a finer one: as the methods promise, and
     /// of the result no more than was seen.
     pub fn contractions(&self, seen: f64) -> [f64; 2] {
+        let [result, curvature] = self.contractions_of_smooth(seen);
+        [if self.kink.is_some() { result.min(CONTRACTION_OF_KINK) } else { result }, curvature]
+    }
+
+    /// The same where no string has a kink.
+    fn contractions_of_smooth(&self, seen: f64) -> [f64; 2] {
         let second = match self.analysis {
             Analysis::Dynamic(settings) if !self.open.integrator => matches!(
                 settings.integrator,
@@ -215,6 +223,12 @@ impl Runner<'_, '_> {
     /// The same where the steps of both runs differ, too.
     pub fn contractions_with_steps(&self, seen: f64) -> [f64; 2] {
         let [result, curvature] = self.contractions(seen);
+        [result.min(self.contractions_of_steps(seen)[0]), curvature]
+    }
+
+    /// The same of the errors of steps alone.
+    pub fn contractions_of_steps(&self, seen: f64) -> [f64; 2] {
+        let [result, curvature] = self.contractions_of_smooth(seen);
         let of_steps = match self.analysis {
             Analysis::Static(_) if self.has_steps() => match self.steps_are_open() {
                 true => CONTRACTION_OF_LOAD_STEPS,
@@ -288,6 +302,19 @@ mod tests {
         assert_eq!(motion(", generalized_alpha.tolerance = 1e-4"), 10.0);
         let ground = "effect.contact = [{ beam = 'arm', stiffness = 1e4, half_plane = { point = [0, -1], normal = [0, 1] } }]";
         assert_eq!(of(&format!("{ground}\n{still}"), f64::INFINITY), [6.0, 2.0]);
+        // Something acts within a string: what its mesh errs by falls with the first order, and what steps do as ever.
+        let string = |more: &str| {
+            let text = format!(
+                "beam.rope = {{ start = [0, 0], end = [4, 0], axial_stiffness = 1, mass_per_length = 1 }}\n\
+                 support = [{{ beam = 'rope', at = 'start', fix = ['x', 'y'] }}]\n\
+                 effect.point_mass = [{{ beam = 'rope', at = 1, mass = 2 }}]\n{more}\n"
+            );
+            let scene = crate::scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+            let runner = runner(&scene, 1e-4);
+            [runner.contractions(f64::INFINITY)[0], runner.contractions_with_steps(f64::INFINITY)[0]]
+        };
+        assert_eq!(string(still), [2.0; 2]);
+        assert_eq!(string("analysis.dynamic = { duration = 1 }"), [2.0; 2]);
         // Steps fall with first order, by four times as many that are chosen, or twice as many of those of a scene.
         let rough = ground.replace("stiffness = 1e4", "stiffness = 1e4, friction = { coefficient = 0.1 }");
         let with_steps = |more: &str, seen: f64| {

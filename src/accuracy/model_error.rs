@@ -63,8 +63,8 @@ pub(super) fn at_jumps(model: &Model, jumps: impl Fn(&Probe) -> bool) -> Option<
     let (s, sees) = if names.len() == 1 { ("", "sees") } else { ("s", "see") };
     (!names.is_empty()).then(|| {
         format!(
-            "what acts in a point makes the strain, or a string's direction, jump where probe{s} {} {sees} it: strain and curvature, or the \
-             angle, are between those on both sides, and their errors are the distances; a probe more than a cell away tells each",
+            "the strain, the curvature or a string's direction jumps where probe{s} {} {sees} it: it is that of one side, or between both, and its \
+             error is the distance to the other; a probe more than a cell away tells each",
             names.join(", ")
         )
     })
@@ -133,9 +133,7 @@ mod tests {
         let scene = parse("scene", text).unwrap();
         let of =
             |jumps: &[f64]| at_jumps(scene.model(), |probe| jumps.contains(&probe.at.s)).unwrap_or_default();
-        assert!(
-            of(&[2.0]).contains("where probe `b` sees it: strain and curvature, or the angle, are between")
-        );
+        assert!(of(&[2.0]).contains("where probe `b` sees it: it is that of one side, or between both"));
         assert!(of(&[1.0, 2.0]).contains("where probes `a`, `b` see it"));
         assert_eq!(of(&[]), "");
     }

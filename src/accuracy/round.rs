@@ -3,13 +3,13 @@
 use super::difference::{self, Difference, StrainJump, stations, stiffness_jumps};
 use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
-use super::saturation::saturates;
+use super::saturation::{ends_prevail, saturates};
 use super::setting::{Family, Setting, Solver};
 use crate::basis::Basis;
 use crate::centreline::Curve;
 use crate::model::{
-    Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, RPIM_GAUSS_POINTS,
-    Static, StepControl,
+    Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, Place,
+    RPIM_GAUSS_POINTS, Static, StepControl,
 };
 use crate::numeric::plain;
 use crate::results::{Errors, Results, RunForError};
@@ -95,8 +95,13 @@ pub(super) struct Runner<'a, 'o> {
     named: Vec<Option<Mesh>>,
     /// Those of them whose errors finer meshes do not remove.
     saturated: Vec<bool>,
+    /// Those of them whose shape functions in the coarse runs are too different. Not in motions, for which elements would
+    /// take more time than the estimate may.
+    dissimilar: Vec<bool>,
     /// Those of them within whose cells something acts in a point.
     pointed: Vec<bool>,
+    /// A place within a string where something acts in a point.
+    pub kink: Option<Place>,
     /// Where in each beam the stiffness against stretching jumps.
     softer: Vec<Vec<f64>>,
     /// Where in each open beam the strain jumps, and how long cells beside that may be in the coarse runs \[m\].
@@ -203,6 +208,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             named.as_ref().is_some_and(|named| has_points(model, index, named))
         };
         let pointed = named.iter().enumerate().map(pointed).collect();
+        let kink = difference::kink(model, &meshes);
         let softer = |(index, mesh): (usize, &Mesh)| stiffness_jumps(model, index, mesh.length());
         let softer = meshes.iter().enumerate().map(softer).collect();
         let saturated = |(beam, mesh): (&Beam, &Mesh)| saturates(&beam.discretization, mesh.length());
@@ -212,6 +218,10 @@ impl<'a, 'o> Runner<'a, 'o> {
                 *mesh = named.coarser();
             }
         }
+        let moves = matches!(analysis, Analysis::Dynamic(_));
+        let dissimilar =
+            |(beam, coarse): (&Beam, &Mesh)| !moves && ends_prevail(&beam.discretization, coarse.cells());
+        let dissimilar = model.beams.iter().zip(&meshes).map(dissimilar).collect();
         let coarsening = |named: &Option<Mesh>| named.as_ref().map_or(Some(2.0), Mesh::coarsening);
         let times = named.iter().filter_map(coarsening).fold(f64::INFINITY, f64::min);
         let tolerance = short((TOLERANCE * result).min(FIRST_TOLERANCE));
@@ -233,7 +243,9 @@ impl<'a, 'o> Runner<'a, 'o> {
             families,
             named,
             saturated,
+            dissimilar,
             pointed,
+            kink,
             softer,
             short: vec![Vec::new(); model.beams.len()],
             halvings: if times.is_finite() { times.log2() } else { 1.0 },
@@ -459,10 +471,10 @@ impl<'a, 'o> Runner<'a, 'o> {
     }
 
     /// Whether coarser meshes tell nothing of the errors of a part of a beam: the scene gives it one cell, or shape functions
-    /// whose errors the number of cells does not decide.
+    /// whose errors the number of cells does not decide, or which are others there.
     fn is_unseen(&self, beam: usize) -> bool {
         let one = self.named[beam].as_ref().is_some_and(|mesh| mesh.coarsening().is_none());
-        one || self.saturated[beam]
+        one || self.saturated[beam] || self.dissimilar[beam]
     }
 
     /// Whether the stiffness of a beam jumps whose mesh is chosen.
@@ -479,8 +491,8 @@ impl<'a, 'o> Runner<'a, 'o> {
     }
 
     /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, with nodes where
-    /// something acts in a point, with short cells where a stiffness jumps, and with elements in place of shape functions whose errors finer meshes do not remove; `None`
-    /// where there is nothing of it.
+    /// something acts in a point, with short cells where a stiffness jumps, and with elements in place of shape functions whose
+    /// errors finer meshes do not remove, or whose errors coarser ones do not tell; `None` where there is nothing of it.
     fn beside_finer(
         &mut self,
         stations: &[Vec<f64>],
@@ -506,8 +518,10 @@ impl<'a, 'o> Runner<'a, 'o> {
                     self.families[index].of(beam, mesh.halved_beside(&self.softer[index]).places())
                 }
                 Some(named) => {
+                    // Elements have to be shorter to err by less than meshfree shape functions do.
+                    let named = if self.dissimilar[index] { named.halved().halved() } else { named.clone() };
                     let nodes = named.quartered_parts().graded_towards(&self.softer[index]).places();
-                    match self.saturated[index] {
+                    match self.saturated[index] || self.dissimilar[index] {
                         true => Family::REDUCED.of(beam, nodes),
                         false => (coarser(&beam.discretization, nodes), beam.gauss_points),
                     }
@@ -555,11 +569,23 @@ impl<'a, 'o> Runner<'a, 'o> {
         )
     }
 
-    /// The same where there is no result, for such a reason, since cells beside such a place have become short.
+    /// What is to be done about a kink within a string.
+    pub fn kink_at(&self) -> Option<String> {
+        let at = self.kink?;
+        Some(format!(
+            "string `{}` has a kink at s = {} m, where something acts in a point, which continuous tangents round off: cut it there (two \
+             strings in a `hinge`)",
+            self.model.beams[at.beam].name,
+            plain(at.s, 6)
+        ))
+    }
+
+    /// What is to be done about a strain that jumps, or a kink, where there is no result, for such a reason, since cells beside such a
+    /// place have become short.
     pub fn shortened(&self, why: &str) -> Option<String> {
-        let first = |(beam, short): (usize, &Vec<[f64; 2]>)| Some((beam, short.first()?[0]));
-        let (beam, s) = self.short.iter().enumerate().find_map(first)?;
-        Some(format!("{}; with shorter cells beside it there is no result: {why}", self.jump_at(beam, s)))
+        let first = |(beam, short): (usize, &Vec<[f64; 2]>)| Some(self.jump_at(beam, short.first()?[0]));
+        let place = self.short.iter().enumerate().find_map(first).or_else(|| self.kink_at())?;
+        Some(format!("{place}; with shorter cells beside it there is no result: {why}"))
     }
 
     /// Gives open beams these meshes, with cells as short as they must be where strains jump.

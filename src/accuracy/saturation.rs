@@ -4,7 +4,8 @@
 //! falls with the spacing only down to a level that their width decides (the saturation error of
 //! stationary interpolation: M. D. Buhmann, *Radial Basis Functions*, Cambridge 2003, chapter 5). From
 //! there on a mesh and its halves agree with each other and not with the truth, so that elements, which
-//! reproduce cubic polynomials, have to be asked.
+//! reproduce cubic polynomials, have to be asked. So they have where half as many nodes are so few that most shape
+//! functions reach to an end ([`ends_prevail`]).
 
 use crate::basis::Basis;
 use crate::model::{Discretization, Nodes};
@@ -26,6 +27,12 @@ pub(super) fn saturates(discretization: &Discretization, length: f64) -> bool {
         *nodes = Nodes::Uniform(nodes.count().min(2 * neighbours + ENDS));
     }
     defect(&few, length).is_some_and(|defect| defect > REPRODUCED)
+}
+
+/// Whether on a mesh of so many cells most shape functions of this kind reach to an end, where they are others than
+/// within the beam. By how much they differ from those on twice as many cells tells nothing of how much the latter err.
+pub(super) fn ends_prevail(discretization: &Discretization, cells: usize) -> bool {
+    matches!(discretization, Discretization::Rpim { neighbours, .. } if cells <= 2 * (2 * neighbours + 1))
 }
 
 /// The largest error of x'' where the nodal values are those of x = s²/2, whose x'' is 1; `None` where
@@ -55,6 +62,14 @@ mod tests {
             *kernel = of;
         }
         found
+    }
+
+    /// The usual cells reach over five, so that of ten only those in the middle do not reach to an end.
+    #[test]
+    fn ends_prevail_on_meshes_of_few_cells() {
+        let found = |cells| ends_prevail(&meshfree(9, None), cells);
+        assert!(found(4) && found(10) && !found(11));
+        assert!(!ends_prevail(&Discretization::ancf(9), 4));
     }
 
     /// The number of nodes and the length do not matter. Beams of these kernels were compared with many

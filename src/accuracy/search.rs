@@ -189,13 +189,16 @@ impl<'a, 'o> Search<'a, 'o> {
             } else if stalls >= STALLS && self.runner.open.load_steps {
                 Some(STICKS.to_owned())
             } else if stalls >= STALLS {
-                Some(SEVERAL.to_owned())
+                Some(self.runner.kink_at().unwrap_or_else(|| SEVERAL.to_owned()))
             } else if let Some(growth) = self.outgrown(&judged, wanted).filter(|_| rounds >= GROWN) {
                 Some(growth)
             } else if rounds >= ROUNDS {
                 Some(format!("{ROUNDS} rounds of finer meshes and smaller steps were not enough"))
             } else {
-                self.improve(&judged, wanted, rounds > 1).err()
+                self.improve(&judged, wanted, rounds > 1).err().map(|why| match self.runner.kink_at() {
+                    Some(kink) => format!("{why}; {kink}"),
+                    None => why,
+                })
             };
             before = Some(now);
             best = Some(match best {
@@ -260,7 +263,7 @@ impl<'a, 'o> Search<'a, 'o> {
                 }
             };
             let (mesh, contraction) = errors(mesh, self.runner.contractions(falls[0].factor));
-            let (steps, _) = errors(steps, self.runner.contractions_with_steps(falls[1].factor));
+            let (steps, _) = errors(steps, self.runner.contractions_of_steps(falls[1].factor));
             let mesh = mesh.divided([caution.recip(); 2]);
             if let Some(whole) = mesh.plus(&steps) {
                 caution = 1.0;

@@ -46,13 +46,7 @@ pub(super) fn couples(model: &Model) -> impl Iterator<Item = String> {
 /// A message for every place within a string where what acts in a point gives it a kink in the last state: its shape functions have
 /// one direction there, and are off by what that is in the cells beside it.
 pub(super) fn kinks(model: &Model, system: &System, last: &[Shape]) -> Vec<String> {
-    let of_parts = model.parts.iter().filter_map(|part| part.point());
-    let of_joints = model.joints.iter().flat_map(|joint| match *joint {
-        Joint::Weld { first, second } | Joint::Hinge { first, second } => vec![first, second],
-        Joint::Slider { at, .. } => vec![at],
-    });
-    let mut places: Vec<Place> =
-        of_parts.chain(of_joints).chain(model.supports.iter().map(|support| support.at)).collect();
+    let mut places: Vec<Place> = model.points().collect();
     places.sort_by(|a, b| (a.beam, a.s).partial_cmp(&(b.beam, b.s)).unwrap_or(std::cmp::Ordering::Equal));
     places.dedup();
     let message = |at: Place| {

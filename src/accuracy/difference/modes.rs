@@ -1,5 +1,6 @@
 //! By how much vibration and buckling modes differ.
 
+use super::kinks::kink;
 use super::places::interpolated;
 use super::{Difference, larger};
 use crate::accuracy::mesh::{CellErrors, Mesh};
@@ -29,9 +30,13 @@ pub fn modes(model: &Model, meshes: &[Mesh], coarse: &Results, fine: &Results) -
             seen.iter().zip(&b).map(|(error, other)| LEAST * error * (value / other).powi(2).min(1.0));
         of_others.filter(|error| error.is_finite()).fold(0.0, f64::max)
     };
-    let eigenvalues: Vec<f64> =
+    let mut eigenvalues: Vec<f64> =
         seen.iter().zip(&b).map(|(error, value)| larger(*error, least(value))).collect();
     let result = eigenvalues.iter().copied().fold(0.0, larger);
+    // A kink changes the tension of a string, and with it all values by similar parts.
+    if kink(model, meshes).is_some() {
+        eigenvalues.fill(result);
+    }
     if !result.is_finite() {
         return Err("a value is not a number".into());
     }
@@ -178,6 +183,17 @@ mod tests {
                 found.cells[0].squares.iter().zip(squares).all(|(a, b)| (a - b).abs() < 1e-9),
                 "{found:?}"
             );
+        }
+        // All frequencies of a string with something within it err by the same part.
+        let kinked = super::super::tests::scene(
+            "modal.count = 1\neffect.point_mass = [{ beam = 'rope', at = 1, mass = 1 }]",
+        );
+        let two = |first: f64, second: f64| vibrations(vec![(first, fine()), (second, fine())]);
+        for (scene, errors) in [(&scene, [0.0125 / 64.0, 0.125]), (&kinked, [0.125; 2])] {
+            let found =
+                between(scene.model(), scene.analysis(), &meshes(), &two(1.0, 9.0), &two(1.0, 8.0)).unwrap();
+            assert_eq!(found.eigenvalues[1], errors[1]);
+            assert!((found.eigenvalues[0] - errors[0]).abs() < 1e-15, "{found:?}");
         }
         // Runs with different numbers of values cannot be compared, nor those that are none.
         let one = |value: f64| vibrations(vec![(value, fine())]);

@@ -19,6 +19,8 @@ const STRAIGHT: f64 = 1e-9;
 const OF_CURVATURE: f64 = 2.0;
 /// An axial force that differs on both sides of a place by more than this part of the largest, or of M/L, jumps there.
 const JUMP: f64 = 1e-6;
+/// The same of a bending moment, and of the largest, both of which come from curvatures of a mesh.
+const JUMP_OF_MOMENT: f64 = 1e-3;
 
 /// The parts of the largest errors of positions and of angles on its beam that those of a probe are at least.
 const LEAST: (f64, f64) = (0.1, 0.04);
@@ -68,7 +70,8 @@ pub fn states<'t>(
                 && let Some(around) = around(fine, j)
             {
                 let section = &model.beams[probe.at.beam].section;
-                samples[j] = one_sided(samples[j], b, around, probe.at.s, section);
+                let bends = bends(model, &fine.last, probe.at);
+                samples[j] = one_sided(samples[j], b, around, probe.at.s, (section, bends));
             }
             let beside = beside_jump(model, &fine.last, &meshes[probe.at.beam], probe.at);
             samples[j].strain = larger(samples[j].strain, beside);
@@ -297,21 +300,44 @@ fn also_before_and_after(samples: &mut [ProbeSample], known: &[usize]) {
     }
 }
 
-/// Whether what acts in this place makes the strain of its beam jump in the last state, or the direction of a string, so that
-/// one value there is neither that before it nor that behind.
+/// Whether what acts in this place makes the strain or the curvature of its beam jump in the last state, or the direction of a string,
+/// so that one value there is not both that before it and that behind.
 pub fn jumps(model: &Model, last: &[Shape], at: Place) -> bool {
     let Some((beam, shape)) = model.beams.get(at.beam).zip(last.get(at.beam)) else { return false };
-    let most_of = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let length = shape.s.last().copied().unwrap_or(0.0);
     let largest = most_of(&shape.axial_force).max(most_of(&shape.bending_moment) / length);
-    let here = |k: &usize| (shape.s[*k] - at.s).abs() <= same_place(&shape.s);
-    let forces = || (0..shape.s.len()).filter(here).filter_map(|k| shape.axial_force.get(k));
-    let [least, most] = forces().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], force| {
-        [least.min(*force), most.max(*force)]
-    });
-    let stretched = beam.section.axial_stiffness.is_some() && most - least > JUMP * largest;
+    let stretched =
+        beam.section.axial_stiffness.is_some() && step(shape, &shape.axial_force, at.s) > JUMP * largest;
     let softer = strain_jump(model, at, shape) > JUMP * most_of(&shape.strain);
-    stretched || softer || beam.section.bending_stiffness.is_none() && is_twice(&shape.s, at.s)
+    let turned = beam.section.bending_stiffness.is_none() && is_twice(&shape.s, at.s);
+    stretched || softer || turned || bends(model, last, at)
+}
+
+/// Whether the curvature of a beam jumps in this place in the last state: the bending moment does, the bending stiffness, or an imposed
+/// curvature.
+fn bends(model: &Model, last: &[Shape], at: Place) -> bool {
+    let Some((beam, shape)) = model.beams.get(at.beam).zip(last.get(at.beam)) else { return false };
+    let Some(bending) = &beam.section.bending_stiffness else { return false };
+    let imposed = model.parts.iter().filter_map(|part| part.actuation(at.beam));
+    let mut jumps = imposed.flat_map(|imposed| imposed.curvature.jumps()).chain(bending.jumps());
+    let moment = &shape.bending_moment;
+    let here = |s: f64| (s - at.s).abs() <= same_place(&shape.s);
+    step(shape, moment, at.s) > JUMP_OF_MOMENT * most_of(moment)
+        || is_twice(&shape.s, at.s) && jumps.any(here)
+}
+
+fn most_of(values: &[f64]) -> f64 {
+    values.iter().fold(0.0_f64, |most, value| most.max(value.abs()))
+}
+
+/// By how much values along a beam jump at a place; minus infinity where it is none of theirs.
+fn step(shape: &Shape, values: &[f64], s: f64) -> f64 {
+    let here = |k: &usize| (shape.s[*k] - s).abs() <= same_place(&shape.s);
+    let here = (0..shape.s.len()).filter(here).filter_map(|k| values.get(k));
+    let [least, most] = here.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| {
+        [least.min(*value), most.max(*value)]
+    });
+    most - least
 }
 
 /// What the strain errs by in the cells beside a place where it jumps by Δε: Δε/2 there, and nothing at their other ends. 0 where the
@@ -335,8 +361,14 @@ fn beside_jump(model: &Model, last: &[Shape], mesh: &Mesh, at: Place) -> f64 {
 
 /// What a probe at such a place errs by: at least by what its strain, or the direction of a string, is off from those at the stations
 /// before and behind it. Where the tangent is so much too long or too short, so is the curvature; of a section whose strain and curvature
-/// depend on each other it jumps, too.
-fn one_sided(seen: ProbeSample, value: &ProbeSample, fine: &Shape, s: f64, section: &Section) -> ProbeSample {
+/// depend on each other it jumps, too, as it does where something `bends` the beam there.
+fn one_sided(
+    seen: ProbeSample,
+    value: &ProbeSample,
+    fine: &Shape,
+    s: f64,
+    (section, bends): (&Section, bool),
+) -> ProbeSample {
     let same = same_place(&fine.s);
     let before = fine.s.partition_point(|place| *place < s - same).checked_sub(1);
     let behind = Some(fine.s.partition_point(|place| *place <= s + same));
@@ -345,8 +377,8 @@ fn one_sided(seen: ProbeSample, value: &ProbeSample, fine: &Shape, s: f64, secti
         let off = differ(value, &side);
         let curvature = match (&section.bending_stiffness, &section.coupling) {
             (None, _) => 0.0,
-            (_, None) => OF_CURVATURE * off.strain * value.curvature.abs(),
-            (_, Some(_)) => off.curvature,
+            (_, None) if !bends => OF_CURVATURE * off.strain * value.curvature.abs(),
+            _ => off.curvature,
         };
         let angle = if section.bending_stiffness.is_some() { 0.0 } else { within_half_a_turn(off.angle) };
         ProbeSample {
@@ -544,6 +576,16 @@ mod tests {
         };
         let at = |beam: usize, s: f64, axial: [f64; 2]| under(0.0, beam, s, axial);
         assert!(at(0, 1.0, [1e-9, 0.0]) && !under(8.0, 0, 1.0, [1e-9, 0.0]), "round-off of a moment");
+        let couple = |by: f64| {
+            let shape = Shape {
+                s: vec![0.0, 1.0, 1.0, 2.0],
+                axial_force: vec![0.0; 4],
+                bending_moment: vec![2.0, 2.0, 2.0 + by, 0.0],
+                ..Shape::default()
+            };
+            jumps(scene.model(), &[shape], Place::new(0, 1.0))
+        };
+        assert!(couple(0.01) && !couple(1e-3));
         assert!(at(0, 1.0, [5.0, 0.0]) && !at(0, 0.5, [5.0, 0.0]) && !at(0, 1.0, [5.0, 5.0 - 1e-6]));
         assert!(at(1, 2.0, [5.0, 5.0]) && !at(1, 1.0, [5.0, 5.0]));
         let fine = Shape {
@@ -557,9 +599,11 @@ mod tests {
         };
         let value = ProbeSample { strain: 2.0, curvature: 2.0, angle: 0.25, ..ProbeSample::default() };
         let seen = ProbeSample { strain: 1e-9, curvature: 1e-9, angle: 1e-9, ..ProbeSample::default() };
-        let of = |section: &Section| one_sided(seen, &value, &fine, 1.0, section);
+        let of = |section: &Section| one_sided(seen, &value, &fine, 1.0, (section, false));
         let [arm, rope] = [0, 1].map(|beam| of(&scene.model().beams[beam].section));
         assert_eq!(arm, ProbeSample { strain: 3.0, curvature: 2.0 * 3.0 * 2.0, ..seen });
+        let bent = one_sided(seen, &value, &fine, 1.0, (&scene.model().beams[0].section, true));
+        assert_eq!(bent, ProbeSample { strain: 3.0, curvature: 2.0, ..seen });
         assert!((rope.angle - 0.75).abs() < 1e-14 && rope.strain == 3.0 && rope.curvature == 1e-9);
         let coupled = Section { coupling: Some(0.5.into()), ..scene.model().beams[0].section.clone() };
         assert_eq!(of(&coupled), ProbeSample { strain: 3.0, curvature: 2.0, ..seen });
