@@ -54,7 +54,7 @@ use crate::scene::Scene;
 use round::{Fineness, Runner};
 use search::Search;
 
-/// Accuracy of the vibrations whose equilibrium tells where nodes must be.
+/// Accuracy of the equilibrium that tells where nodes must be.
 const PLACES: f64 = 1e-4;
 /// At so many places of each beam its forces are known, and linear between them.
 const ROWS: usize = 2001;
@@ -128,7 +128,7 @@ pub fn solve(
     Search::new(Runner::new(model, analysis, open, Some(wanted), options)).run()
 }
 
-/// Where there must be nodes since the stiffness of open beams jumps in the equilibrium about which they vibrate: where
+/// Where there must be nodes since the stiffness of open beams jumps in an equilibrium, or in that about which they vibrate: where
 /// their forces pass corners of their laws. A first search, which wants no more than [`PLACES`], finds them.
 fn stiffness_jumps(
     model: &Model,
@@ -137,9 +137,13 @@ fn stiffness_jumps(
     wanted: Accuracy,
     options: &Options<'_>,
 ) -> Vec<Place> {
-    let about = matches!(analysis, Analysis::Modal(settings) if settings.about == About::Equilibrium);
+    let rests = match analysis {
+        Analysis::Modal(settings) => settings.about == About::Equilibrium,
+        Analysis::Static(_) => true,
+        _ => false,
+    };
     let linear = model.beams.iter().all(|beam| beam.section.is_linear());
-    if !about || linear {
+    if !rests || linear {
         return Vec::new();
     }
     let wanted = Accuracy::new(wanted.result.max(PLACES));

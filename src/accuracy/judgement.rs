@@ -14,8 +14,9 @@ const CONTRACTION: f64 = 15.0;
 const CONTRACTION_OF_MOTION: f64 = 10.0;
 /// … of beams with contacts, which begin and end within cells …
 const CONTRACTION_OF_CONTACT: f64 = 6.0;
-/// … of strings with a kink within them, which continuous tangents round off …
-const CONTRACTION_OF_KINK: f64 = 2.0;
+/// … of strings with a kink within them, which continuous tangents round off, and at rest with friction, which sticks in a part of a
+/// cell or not …
+const CONTRACTION_OF_FIRST_ORDER: f64 = 2.0;
 /// … of all results of a method of second order …
 const CONTRACTION_OF_SECOND_ORDER: f64 = 4.0;
 /// … of curvatures and section forces, of which the largest error on a beam counts: at loads and
@@ -195,10 +196,12 @@ impl Runner<'_, '_> {
     /// of the result no more than was seen.
     pub fn contractions(&self, seen: f64) -> [f64; 2] {
         let [result, curvature] = self.contractions_of_smooth(seen);
-        [if self.kink.is_some() { result.min(CONTRACTION_OF_KINK) } else { result }, curvature]
+        let sticks = matches!(self.analysis, Analysis::Static(_)) && self.model.has_friction();
+        let first_order = self.kink.is_some() || sticks;
+        [if first_order { result.min(CONTRACTION_OF_FIRST_ORDER) } else { result }, curvature]
     }
 
-    /// The same where no string has a kink.
+    /// The same where no string has a kink and nothing sticks.
     fn contractions_of_smooth(&self, seen: f64) -> [f64; 2] {
         let second = match self.analysis {
             Analysis::Dynamic(settings) if !self.open.integrator => matches!(

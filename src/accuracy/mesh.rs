@@ -42,6 +42,8 @@ const CAREFUL: f64 = 2.0;
 const MORE: f64 = 1.1;
 /// Largest relative difference of the cells of even spacing.
 const SAME: f64 = 1e-9;
+/// Places that are nearer to a node, in cells, are nearly nodes.
+const AT_NODE: f64 = 0.01;
 
 /// The nodes of one beam.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,6 +159,18 @@ impl Mesh {
         all.extend(self.fixed.iter().filter(missing));
         all.sort_by(f64::total_cmp);
         Self { nodes: all, fixed: self.fixed.clone() }
+    }
+
+    /// With more nodes, at those of the `places` that are not nearly nodes.
+    pub fn and(mut self, places: &[f64]) -> Self {
+        for s in places {
+            let cell = self.cell_at(*s);
+            let [start, end] = [self.nodes[cell], self.nodes[cell + 1]];
+            if (s - start).min(end - s) > AT_NODE * (end - start) {
+                self.nodes.insert(cell + 1, *s);
+            }
+        }
+        self
     }
 
     /// Its parts between nodes that must be: the nodes of each.
@@ -550,6 +564,12 @@ mod tests {
         assert!(cells[0] < 0.25 * cells[cells.len() - 1], "{found:?}");
         assert!(growths.iter().all(|growth| *growth > 0.99 && *growth < 2.6), "{found:?}");
         assert!(found.contains(&0.0) && found.contains(&1.0));
+    }
+
+    #[test]
+    fn nodes_are_added_where_none_is_near() {
+        let mesh = Mesh::of(&[0.0, 1.0, 3.0]).and(&[2.0, 0.995, 1.004, 0.0, 3.0, 0.5]);
+        assert_eq!(mesh.nodes, [0.0, 0.5, 1.0, 2.0, 3.0]);
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::model::{
 };
 use crate::numeric::plain;
 use crate::results::{Errors, Results, RunForError};
-use crate::run::{Options, RunError};
+use crate::run::{Options, RunError, stiffness_jumps as stiffness_jumps_of_laws};
 
 /// Smallest tolerance of any run.
 pub(super) const FINEST: f64 = 1e-13;
@@ -491,7 +491,7 @@ impl<'a, 'o> Runner<'a, 'o> {
     }
 
     /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, with nodes where
-    /// something acts in a point, with short cells where a stiffness jumps, and with elements in place of shape functions whose
+    /// something acts in a point or forces pass corners of laws, with short cells where a stiffness jumps, and with elements in place of shape functions whose
     /// errors finer meshes do not remove, or whose errors coarser ones do not tell; `None` where there is nothing of it.
     fn beside_finer(
         &mut self,
@@ -502,8 +502,11 @@ impl<'a, 'o> Runner<'a, 'o> {
         // What acts in a point within a cell makes an error by its place in the cell, which is another one in coarser cells.
         let beams = 0..self.model.beams.len();
         // Where a stiffness jumps, errors of the first order are beside others that fall so fast that coarser meshes show these only.
-        let is_unseen =
-            |beam: &usize| self.is_unseen(*beam) || self.pointed[*beam] || !self.softer[*beam].is_empty();
+        let corners = self.corners(results);
+        let is_unseen = |beam: &usize| {
+            let acts = self.pointed[*beam] || !self.softer[*beam].is_empty() || !corners[*beam].is_empty();
+            self.is_unseen(*beam) || acts
+        };
         let unseen: Vec<usize> = beams.filter(is_unseen).collect();
         if unseen.is_empty() || !results.run().complete {
             return Ok(None);
@@ -514,14 +517,17 @@ impl<'a, 'o> Runner<'a, 'o> {
             let beam = &self.model.beams[index];
             finer.beams[index] = match &self.named[index] {
                 None => {
-                    let mesh = self.meshes[index].halved();
-                    self.families[index].of(beam, mesh.halved_beside(&self.softer[index]).places())
+                    let mesh = self.meshes[index].halved().halved_beside(&self.softer[index]);
+                    self.families[index].of(beam, mesh.and(&corners[index]).places())
                 }
                 Some(named) => {
-                    // Elements have to be shorter to err by less than meshfree shape functions do.
-                    let named = if self.dissimilar[index] { named.halved().halved() } else { named.clone() };
-                    let nodes = named.quartered_parts().graded_towards(&self.softer[index]).places();
-                    match self.saturated[index] || self.dissimilar[index] {
+                    // Meshfree shape functions reach over corners. Elements have to be shorter to err by less than those do.
+                    let meshfree = matches!(beam.discretization, Discretization::Rpim { .. });
+                    let dissimilar = self.dissimilar[index] || meshfree && !corners[index].is_empty();
+                    let named = if dissimilar { named.halved().halved() } else { named.clone() };
+                    let mesh = named.quartered_parts().graded_towards(&self.softer[index]);
+                    let nodes = mesh.and(&corners[index]).places();
+                    match self.saturated[index] || dissimilar {
                         true => Family::REDUCED.of(beam, nodes),
                         false => (coarser(&beam.discretization, nodes), beam.gauss_points),
                     }
@@ -536,6 +542,27 @@ impl<'a, 'o> Runner<'a, 'o> {
         }
         let difference = self.difference(&finer, results)?;
         Ok(Some(if at_jumps { difference.divided([TOLD_BY_HALF.recip(); 2]) } else { difference }))
+    }
+
+    /// Where in each beam its forces pass corners of its laws within cells of the finer run, in the last state. What coarser meshes
+    /// have nodes at, too, they err at by as much. In motions such places wander.
+    fn corners(&self, results: &Results) -> Vec<Vec<f64>> {
+        let mut corners = vec![Vec::new(); self.model.beams.len()];
+        let linear = self.model.beams.iter().all(|beam| beam.section.is_linear());
+        if linear || matches!(self.analysis, Analysis::Dynamic(_)) {
+            return corners;
+        }
+        for place in stiffness_jumps_of_laws(self.model, &results.states().last) {
+            let mesh = match &self.named[place.beam] {
+                Some(named) => named.clone(),
+                None => self.meshes[place.beam].halved(),
+            };
+            let cells = mesh.cells();
+            if mesh.and(&[place.s]).cells() > cells {
+                corners[place.beam].push(place.s);
+            }
+        }
+        corners
     }
 
     /// Shorter cells where the strain of an open beam jumps, if errors of the first order there are more than a part of the

@@ -44,6 +44,8 @@ const POWER_OF_LOAD_STEPS: f64 = 0.5;
 const STEPS: f64 = 5.0;
 /// Most cells of all beams …
 const CELLS: usize = 4096;
+/// … with friction, in thousands of load steps …
+const CELLS_OF_LOAD_STEPS: usize = 1024;
 /// … or so many times those with which the search begins.
 const CELLS_MORE: usize = 16;
 /// Accuracies below this are beyond what doubles and iterations leave.
@@ -82,7 +84,8 @@ impl<'a, 'o> Search<'a, 'o> {
     /// A search that begins where `runner` is.
     pub fn new(runner: Runner<'a, 'o>) -> Self {
         let cells: usize = runner.meshes.iter().map(Mesh::cells).sum();
-        Self { most: CELLS.max(CELLS_MORE * cells), runner }
+        let most = if runner.open.load_steps { CELLS_OF_LOAD_STEPS } else { CELLS };
+        Self { most: most.max(CELLS_MORE * cells), runner }
     }
 
     /// Refines until errors are small enough, or there is a reason why they will not be.
@@ -373,10 +376,14 @@ impl<'a, 'o> Search<'a, 'o> {
         }
         let most = self.most;
         if 2 * round.cells >= most {
-            return Err(format!(
-                "more than {most} cells would be needed: where something pulls along a beam between its ends, cut it there (two beams in a \
-                 `weld` have a strain each)"
-            ));
+            let why = match self.runner.open.load_steps {
+                _ if self.runner.kink.is_some() => "",
+                true => ": friction sticks or slips in a part of a cell; ask for less",
+                false => {
+                    ": where something pulls along a beam between its ends, cut it there (two beams in a `weld` have a strain each)"
+                }
+            };
+            return Err(format!("more than {most} cells would be needed{why}"));
         }
         self.spread(&estimate.mesh.cells, times.max(1.1));
         Ok(())

@@ -13,7 +13,7 @@ use crate::scene::value::Located;
 pub struct LawTable {
     /// From 0 evenly to 1.
     pub ramp: Option<RampTable>,
-    /// From 0 to 1 with continuous acceleration.
+    /// From 0 to 1 with continuous acceleration: 10 x³ − 15 x⁴ + 6 x⁵ of the part x of its time.
     pub smooth_ramp: Option<RampTable>,
     /// 0 before, 1 from then on.
     pub step: Option<StepTable>,
