@@ -163,6 +163,10 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
     if value <= allowed * factor {
         return Verdict::Unstable;
     }
+    let mut by_order = || ALLOWED * neighbour::apart_by_order(&case.scene, &case.frame, rng);
+    if places && settings::has_friction(&case.scene) && value <= by_order() {
+        return Verdict::Unstable;
+    }
     let says = format!(
         "{what}: {value:.2e} where {allowed:.2e} is allowed, and neighbours depart by {factor:.1} times their difference"
     );

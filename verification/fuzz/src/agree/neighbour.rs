@@ -22,6 +22,8 @@ const SHAKEN: [&str; 7] = [
 
 /// Neighbours in each frame; where chance decides, so many hardly ever agree.
 const NEIGHBOURS: usize = 5;
+/// Changes of which only the order of what happens takes notice.
+const TINY: f64 = 1e-12;
 /// Energies below this are round-off \[EI/L\].
 const REST: f64 = 1e-12;
 
@@ -106,6 +108,17 @@ pub fn growth(scene: &Table, frame: &Frame, rng: &mut Rng) -> Growth {
         }
     }
     growth
+}
+
+/// The largest distance between a scene and neighbours that differ from it by next to nothing: which point sticks first may decide
+/// where others stick, and the last digits which one that is.
+pub fn apart_by_order(scene: &Table, frame: &Frame, rng: &mut Rng) -> f64 {
+    let Outcome::Solved(here) = outcome::run(scene, frame) else { return 0.0 };
+    let departure = |_| match outcome::run(&near(scene, TINY, rng), frame) {
+        Outcome::Solved(there) => gap::between(&here, &there, Records::Common).places,
+        _ => 0.0,
+    };
+    (0..NEIGHBOURS).map(departure).fold(0.0, f64::max)
 }
 
 /// Whether runs whose errors, loads or stiffnesses are a little different have as many events as
