@@ -75,7 +75,9 @@ pub(super) fn at_jumps(model: &Model, jumps: impl Fn(&Probe) -> bool) -> Option<
 pub(super) fn largest(beams: usize, t: &Trajectory) -> Vec<[f64; 2]> {
     let most = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let of = |beam: usize| {
-        let shapes = t.stations.iter().chain([&t.last]).filter_map(|beams| beams.get(beam));
+        // Where the first record is that before any load, it is the shape in which the scene begins, whatever that strains.
+        let before = t.parameter.iter().take_while(|at| **at == 0.0).count();
+        let shapes = t.stations.iter().skip(before).chain([&t.last]).filter_map(|beams| beams.get(beam));
         shapes.fold([0.0_f64; 2], |[strain, curvature], shape| {
             [strain.max(most(&shape.strain)), curvature.max(most(&shape.curvature))]
         })
@@ -151,7 +153,13 @@ mod tests {
             vec![shape(&[-0.4, 0.0], &[1.0, 2.0])],
         ];
         let last = vec![shape(&[0.0, -0.5], &[2.0, -1.0])];
-        let found = largest(2, &Trajectory { stations, last, ..Trajectory::default() });
-        assert_eq!(found, [[0.5, 3.0], [0.0, 5.0]]);
+        let run = |parameter: &[f64]| Trajectory {
+            parameter: parameter.into(),
+            stations: stations.clone(),
+            last: last.clone(),
+            ..Trajectory::default()
+        };
+        assert_eq!(largest(2, &run(&[0.5, 1.0])), [[0.5, 3.0], [0.0, 5.0]]);
+        assert_eq!(largest(2, &run(&[0.0, 1.0])), [[0.5, 2.0], [0.0, 2.0]], "the beginning is no result");
     }
 }

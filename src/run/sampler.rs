@@ -973,8 +973,9 @@ impl<'a> Sampler<'a> {
         let divided = solution.statistics.rejected_steps;
         if divided > 0 && matches!(settings.integrator.step_control(), StepControl::Fixed(_)) {
             let smallest = solution.history.iter().map(|r| r.step).fold(f64::INFINITY, f64::min);
+            let unseen = if self.model.has_contact() { " or a contact would not have been seen" } else { "" };
             trajectory.run.warnings.push(format!(
-                "the step was divided {divided} time{}, down to {smallest:.1e} s, because its equations could not be solved or a contact would not have been seen: \
+                "the step was divided {divided} time{}, down to {smallest:.1e} s, because its equations could not be solved{unseen}: \
                  give `tolerance` instead of `step`, or a smaller `step`",
                 if divided == 1 { "" } else { "s" }
             ));
