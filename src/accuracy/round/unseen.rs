@@ -1,0 +1,216 @@
+//! Errors that coarser meshes do not show: of parts with one cell, of shape functions that are others there, and of what acts in a
+//! point, where errors of the first order are beside others that fall faster, or where all meshes err alike.
+
+use super::{Purpose, Round, Runner, coarser};
+use crate::accuracy::difference::{self, Difference, StrainJump};
+use crate::accuracy::mesh::Mesh;
+use crate::accuracy::setting::{Family, Setting};
+use crate::basis::Basis;
+use crate::centreline::Curve;
+use crate::model::{Accuracy, Analysis, Discretization, Model};
+use crate::numeric::plain;
+use crate::results::Results;
+use crate::run::stiffness_jumps as jumps_of_laws;
+
+/// Part of the wanted error that may be due to strains that jump …
+const AT_JUMPS: f64 = 0.25;
+/// … the part of their length to which cells beside these become shorter at once …
+const MOST_SHORTER: f64 = 0.01;
+/// … and how short they may be, in beam lengths: the round-off of positions makes forces that grow as the third power of what
+/// follows from it.
+const SHORTEST: f64 = 2e-4;
+/// With half of their length errors that fall with the first order are told by half.
+const TOLD_BY_HALF: f64 = 2.0;
+
+/// What acts this near to a node, in cells, acts there: the error is the cube of it.
+const AT_NODE: f64 = 0.02;
+
+impl Runner<'_, '_> {
+    /// Whether coarser meshes tell nothing of the errors of a part of a beam: the scene gives it one cell, or shape functions
+    /// whose errors the number of cells does not decide, or which are others there.
+    pub(super) fn is_unseen(&self, beam: usize) -> bool {
+        let one = self.named[beam].as_ref().is_some_and(|mesh| mesh.coarsening().is_none());
+        one || self.saturated[beam] || self.dissimilar[beam]
+    }
+
+    /// Whether the stiffness of a beam jumps whose mesh is chosen.
+    fn has_open_jumps(&self) -> bool {
+        (0..self.model.beams.len()).any(|beam| self.is_open(beam) && !self.softer[beam].is_empty())
+    }
+
+    /// Where the stiffnesses of open beams jump, with all that results differ by from those `beside` them.
+    pub(super) fn stiffness_jumps(&self, beside: Option<&Difference>) -> Vec<StrainJump> {
+        let error = beside.map_or(0.0, |beside| beside.errors.result);
+        let open = (0..self.model.beams.len()).filter(|beam| self.is_open(*beam));
+        open.flat_map(|beam| self.softer[beam].iter().map(move |s| StrainJump { beam, s: *s, error }))
+            .collect()
+    }
+
+    /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, with nodes where
+    /// something acts in a point or forces pass corners of laws, with short cells where a stiffness jumps, and with elements in
+    /// place of shape functions whose errors finer meshes do not remove, or whose errors coarser ones do not tell; `None` where
+    /// there is nothing of it.
+    pub(super) fn beside_finer(
+        &mut self,
+        stations: &[Vec<f64>],
+        setting: &Setting,
+        results: &Results,
+    ) -> Result<Option<Difference>, String> {
+        // What acts in a point within a cell makes an error by its place in the cell, which is another one in coarser cells.
+        let beams = 0..self.model.beams.len();
+        // Where a stiffness jumps, errors of the first order are beside others that fall so fast that coarser meshes show these only.
+        let corners = self.corners(results);
+        let is_unseen = |beam: &usize| {
+            let acts = self.pointed[*beam] || !self.softer[*beam].is_empty() || !corners[*beam].is_empty();
+            self.is_unseen(*beam) || acts
+        };
+        let unseen: Vec<usize> = beams.filter(is_unseen).collect();
+        if unseen.is_empty() || !results.run().complete {
+            return Ok(None);
+        }
+        let at_jumps = self.has_open_jumps();
+        let mut finer = setting.clone();
+        for index in unseen {
+            let beam = &self.model.beams[index];
+            finer.beams[index] = match &self.named[index] {
+                None => {
+                    let mesh = self.meshes[index].halved().halved_beside(&self.softer[index]);
+                    self.families[index].of(beam, mesh.and(&corners[index]).places())
+                }
+                Some(named) => {
+                    // Meshfree shape functions reach over corners. Elements have to be shorter to err by less than those do.
+                    let meshfree = matches!(beam.discretization, Discretization::Rpim { .. });
+                    let dissimilar = self.dissimilar[index] || meshfree && !corners[index].is_empty();
+                    let named = if dissimilar { named.halved().halved() } else { named.clone() };
+                    let mesh = named.quartered_parts().graded_towards(&self.softer[index]);
+                    let nodes = mesh.and(&corners[index]).places();
+                    match self.saturated[index] || dissimilar {
+                        true => Family::REDUCED.of(beam, nodes),
+                        false => (coarser(&beam.discretization, nodes), beam.gauss_points),
+                    }
+                }
+            };
+        }
+        let finer = self.solve(stations, &finer, Purpose::Shapes).map_err(|error| {
+            format!("on more cells, by which errors are told that coarser ones do not show, there is no result: {error}")
+        })?;
+        if !finer.run().complete {
+            return Err("the run on more cells was stopped".to_owned());
+        }
+        let difference = self.difference(&finer, results)?;
+        Ok(Some(if at_jumps { difference.divided([TOLD_BY_HALF.recip(); 2]) } else { difference }))
+    }
+
+    /// Where in each beam its forces pass corners of its laws within cells of the finer run, in the last state. What coarser meshes
+    /// have nodes at, too, they err at by as much. In motions such places wander.
+    fn corners(&self, results: &Results) -> Vec<Vec<f64>> {
+        let mut corners = vec![Vec::new(); self.model.beams.len()];
+        let linear = self.model.beams.iter().all(|beam| beam.section.is_linear());
+        if linear || matches!(self.analysis, Analysis::Dynamic(_)) {
+            return corners;
+        }
+        for place in jumps_of_laws(self.model, &results.states().last) {
+            let mesh = match &self.named[place.beam] {
+                Some(named) => named.clone(),
+                None => self.meshes[place.beam].halved(),
+            };
+            let cells = mesh.cells();
+            if mesh.and(&[place.s]).cells() > cells {
+                corners[place.beam].push(place.s);
+            }
+        }
+        corners
+    }
+
+    /// Shorter cells where the strain of an open beam jumps, if errors of the first order there are more than a part of the
+    /// `wanted` one; whether they are.
+    ///
+    /// # Errors
+    /// In words, where round-off allows no shorter ones.
+    pub fn grade(&mut self, jumps: &[StrainJump], wanted: f64) -> Result<bool, String> {
+        let mut any = false;
+        for StrainJump { beam, s, error } in jumps.iter().filter(|jump| jump.error > AT_JUMPS * wanted) {
+            let mesh = &self.meshes[*beam];
+            let longest = mesh.longest_beside(*s);
+            let short = (MOST_SHORTER.max(AT_JUMPS * wanted / error) * longest).max(SHORTEST * mesh.length());
+            if short < longest {
+                let others = self.short[*beam].iter().copied().filter(|[place, _]| place != s);
+                self.short[*beam] = others.chain([[*s, short]]).collect();
+                any = true;
+            } else if *error > wanted {
+                return Err(self.jump_at(*beam, *s));
+            }
+        }
+        Ok(any)
+    }
+
+    /// What is to be done about a strain that jumps.
+    fn jump_at(&self, beam: usize, s: f64) -> String {
+        format!(
+            "the strain of beam `{}` jumps at s = {} m, which one beam cannot follow: cut it there (two beams in a `weld` have a strain each)",
+            self.model.beams[beam].name,
+            plain(s, 6)
+        )
+    }
+
+    /// What is to be done about a kink within a string.
+    pub fn kink_at(&self) -> Option<String> {
+        let at = self.kink?;
+        Some(format!(
+            "string `{}` has a kink at s = {} m, where something acts in a point, which continuous tangents round off: cut it there (two \
+             strings in a `hinge`)",
+            self.model.beams[at.beam].name,
+            plain(at.s, 6)
+        ))
+    }
+
+    /// What is to be done about a strain that jumps, or a kink, where there is no result, for such a reason, since cells beside such a
+    /// place have become short.
+    pub fn shortened(&self, why: &str) -> Option<String> {
+        let first = |(beam, short): (usize, &Vec<[f64; 2]>)| Some(self.jump_at(beam, short.first()?[0]));
+        let place = self.short.iter().enumerate().find_map(first).or_else(|| self.kink_at())?;
+        Some(format!("{place}; with shorter cells beside it there is no result: {why}"))
+    }
+
+    /// Gives open beams these meshes, with cells as short as they must be where strains jump.
+    pub fn take(&mut self, meshes: Vec<Mesh>) {
+        let graded = |(mesh, short): (Mesh, &Vec<[f64; 2]>)| {
+            short.iter().fold(mesh, |mesh, [s, length]| mesh.graded_down_to(*s, *length))
+        };
+        self.meshes = meshes.into_iter().zip(&self.short).map(graded).collect();
+    }
+
+    /// Why no choice for other beams makes errors as small as is wanted, where those are larger that coarser meshes do
+    /// not tell.
+    pub fn remains(&self, round: &Round, caution: f64, wanted: Accuracy) -> Option<String> {
+        let error = caution * round.unseen.as_ref()?.errors.result;
+        let round_off = difference::round_off(&round.results).map_or(0.0, |of| of.errors.result);
+        if round_off > wanted.result {
+            return Some(format!(
+                "round-off of the stiffness may change a value by {round_off:.1e}, which more cells make worse: ask for less, or leave out an \
+                 `axial_stiffness` that is of no interest"
+            ));
+        }
+        let beams = (0..self.model.beams.len()).filter(|beam| self.is_unseen(*beam));
+        let names: Vec<String> = beams.map(|beam| format!("`{}`", self.model.beams[beam].name)).collect();
+        (error > wanted.result && !names.is_empty()).then(|| {
+            format!(
+                "the basis that the scene gives {} leaves an error of {error:.1e}: leave it out, or give it more nodes",
+                names.join(", ")
+            )
+        })
+    }
+}
+
+/// Whether something acts in a point within a cell that the scene gives a beam. `named` has nodes there, and those that the scene
+/// names.
+pub(super) fn has_points(model: &Model, beam: usize, named: &Mesh) -> bool {
+    let Ok(length) = Curve::new(&model.beams[beam].centreline).map(|curve| curve.length()) else {
+        return false;
+    };
+    let Ok(basis) = Basis::new(&model.beams[beam].discretization, length) else { return false };
+    let own: Vec<f64> = basis.nodes().iter().copied().chain(model.breaks(beam)).collect();
+    let near = AT_NODE * length / own.len() as f64;
+    let within = |s: &f64| own.iter().all(|node| (node - s).abs() > near);
+    named.nodes.iter().any(within)
+}
