@@ -49,13 +49,16 @@ mod statement;
 
 use crate::model::{About, Accuracy, Analysis, Model, Open, Place};
 use crate::results::{LazyText, Results};
-use crate::run::{self, Options, RunError, StagesRun, solve_stages};
+use crate::run::{Options, RunError, StagesRun, solve_stages};
 use crate::scene::Scene;
 use round::{Fineness, Runner};
 use search::Search;
 
 /// Accuracy of the equilibrium that tells where nodes must be.
 const PLACES: f64 = 1e-4;
+/// Such places that are nearer to each other, in beam lengths, share a node: in a cell the error is that of a corner times the square of
+/// its distance from the node.
+const NEAR: f64 = 2e-3;
 /// At so many places of each beam its forces are known, and linear between them.
 const ROWS: usize = 2001;
 
@@ -66,6 +69,8 @@ pub struct Accurate {
     pub results: Results,
     /// What was chosen, as lines of a scene.
     pub chosen: String,
+    /// Where forces pass corners of laws.
+    corners: Vec<Place>,
 }
 
 /// Solves a scene: with everything chosen that it leaves open where it asks for an accuracy, and
@@ -85,7 +90,7 @@ pub fn run(scene: &Scene, options: Options<'_>) -> Result<Results, RunError> {
     let Some(wanted) = scene.accuracy() else {
         return scene.model().solve_with(scene.analysis(), options);
     };
-    let Accurate { mut results, chosen } =
+    let Accurate { mut results, chosen, .. } =
         solve(scene.model(), scene.analysis(), scene.open(), wanted, options)?;
     if let Some(error) = &mut results.run_mut().error {
         error.usual = !scene.names_accuracy();
@@ -128,7 +133,7 @@ pub fn solve(
     Search::new(Runner::new(model, analysis, open, Some(wanted), options)).run()
 }
 
-/// Where there must be nodes since the stiffness of open beams jumps in an equilibrium, or in that about which they vibrate: where
+/// Where there must be nodes since the stiffness of open beams jumps in equilibria, or in that about which they vibrate: where
 /// their forces pass corners of their laws. A first search, which wants no more than [`PLACES`], finds them.
 fn stiffness_jumps(
     model: &Model,
@@ -153,9 +158,16 @@ fn stiffness_jumps(
     let Ok(found) = Search::new(Runner::new(model, analysis, open, Some(wanted), first)).run() else {
         return Vec::new();
     };
-    let mut places = run::stiffness_jumps(model, &found.results.states().last);
-    places.retain(|place| open.beams.get(place.beam) == Some(&true));
-    places
+    let shapes = &found.results.states().last;
+    let length = |beam: usize| shapes.get(beam).and_then(|shape| shape.s.last()).copied().unwrap_or(0.0);
+    let open_beams = found.corners.into_iter().filter(|place| open.beams.get(place.beam) == Some(&true));
+    open_beams.fold(Vec::new(), |mut places: Vec<Place>, place| {
+        let near = NEAR * length(place.beam);
+        if places.iter().all(|other| other.beam != place.beam || (other.s - place.s).abs() > near) {
+            places.push(place);
+        }
+        places
+    })
 }
 
 /// Solves `model` as it is and estimates the errors of the results by a run on half as many cells

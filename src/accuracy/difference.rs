@@ -175,7 +175,8 @@ pub(crate) fn pairs(
     Ok(pairs)
 }
 
-fn is_path(analysis: &Analysis) -> bool {
+/// Whether an analysis follows a path, of which each run takes points of its own.
+pub(super) fn is_path(analysis: &Analysis) -> bool {
     matches!(analysis, Analysis::Static(settings) if settings.arc_length.is_some())
 }
 

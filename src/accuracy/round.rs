@@ -145,6 +145,8 @@ pub(super) struct Round {
     pub unseen: Option<Difference>,
     /// Where in open beams the strain jumps, with the part of it that shorter cells there would make smaller.
     pub jumps: Vec<StrainJump>,
+    /// Where forces pass corners of laws, in all states that rest.
+    pub corners: Vec<Place>,
     /// By which factor the difference has fallen, where there was a third run.
     pub fall: Option<f64>,
     /// Cells of the open beams.
@@ -342,6 +344,7 @@ impl<'a, 'o> Runner<'a, 'o> {
         purpose: Purpose,
     ) -> Result<Results, RunError> {
         let (model, analysis) = setting.apply(self.model, self.analysis);
+        let has_corners = self.has_corners();
         let Options { start, observer, checkpoints, cache, states, frames, shape_points, stations: _, saved } =
             &mut self.options;
         let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
@@ -351,7 +354,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             observer: observer.as_mut().map(|observer| &mut **observer as _),
             checkpoints: *checkpoints,
             cache: *cache,
-            states: *states && purpose == Purpose::Results,
+            states: (*states || has_corners) && purpose == Purpose::Results,
             frames: if purpose == Purpose::Results { *frames } else { 0 },
             shape_points: match purpose {
                 _ if wanted => *shape_points,
@@ -403,9 +406,13 @@ impl<'a, 'o> Runner<'a, 'o> {
             before => before,
         };
         let setting = self.setting(Fineness::Fine, Fineness::Fine);
-        let results = self.solve(&stations, &setting, Purpose::Results)?;
+        let mut results = self.solve(&stations, &setting, Purpose::Results)?;
         let run = self.runs.len() - 1;
-        let (beside, failed) = match self.beside_finer(&stations, &setting, &results) {
+        let corners = self.corners(&setting, &results);
+        if !self.options.states {
+            results.states_mut().states = None;
+        }
+        let (beside, failed) = match self.beside_finer(&stations, &setting, &results, &corners) {
             Ok(beside) => (beside, None),
             Err(why) => (None, Some(why)),
         };
@@ -452,6 +459,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             difference,
             unseen,
             jumps,
+            corners,
             fall,
             cells,
             steps_matter,
@@ -558,6 +566,7 @@ pub(super) mod tests {
             difference,
             unseen: None,
             jumps: Vec::new(),
+            corners: Vec::new(),
             fall: None,
             cells,
             steps_matter,

@@ -442,7 +442,7 @@ impl<'a, 'o> Search<'a, 'o> {
     fn finished(self, judged: Judged, reason: Option<String>) -> Accurate {
         let stated = judged.stated();
         let Judged { round, estimate: errors, .. } = judged;
-        let Round { mut results, setting, .. } = round;
+        let Round { mut results, setting, corners, .. } = round;
         let lengths: Vec<f64> = self.runner.meshes.iter().map(Mesh::length).collect();
         let largest = model_error::largest(lengths.len(), results.states());
         let mut notes = model_error::notes(self.runner.model, &lengths, &largest);
@@ -482,7 +482,7 @@ impl<'a, 'o> Search<'a, 'o> {
                 first.and_then(|first| states.parameter.get(first.checked_sub(1)?).copied());
         }
         results.run_mut().error = Some(Box::new(estimate));
-        Accurate { results, chosen }
+        Accurate { results, chosen, corners }
     }
 }
 

@@ -521,3 +521,47 @@ fn corners_of_laws_near_a_node_of_all_meshes_are_seen() {
         assert!(truth <= 3.0 * estimated && estimated < 1e-3, "{basis}: {truth:e} for {estimated:e}");
     }
 }
+
+/// The same of states on the way: a moment and a force at the tip of a cantilever of 1 m pass the corner of its law in the fifth and the
+/// sixth of nine records only. The tip of the fifth was found as above (EA = 10⁴ N).
+#[test]
+fn corners_of_laws_on_the_way_are_seen() {
+    let exact = [0.943_622_666_8, 0.294_067_059_4];
+    let text = |basis: &str, accuracy: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, {basis}\n\
+               bending_law = {{ curvature = [-40, -0.5, 0.5, 40], moment = [-41.5, -2, 2, 41.5] }} }}\n\
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             effect.force = [{{ beam = 'arm', at = 'end', value = [0, 1.2] }}]\n\
+             effect.moment = [{{ beam = 'arm', at = 'end', value = 3 }}]\n\
+             probe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]\n\
+             analysis.static = {{ steps = 9{accuracy} }}"
+        )
+    };
+    let judged = |results: &ancf::results::Results| {
+        let states = results.states();
+        let record = states.parameter.iter().position(|at| (at - 5.0 / 9.0).abs() < 1e-9).expect("a record");
+        let (found, told) = (&states.probes[0].samples[record], error(results).probes[0].samples[record].x);
+        ((found.x - exact[0]).hypot(found.y - exact[1]), told)
+    };
+    for wanted in [1e-4, 1e-5, 5e-6, 3e-6, 1e-6, 5e-8] {
+        let results = run(&scene(&text("", &format!(", accuracy = {wanted:e}"))));
+        let (truth, told) = judged(&results);
+        assert!(error(&results).met && truth <= wanted, "{wanted:e}: {truth:e}");
+        assert!(truth <= 3.0 * told + 1e-10, "{wanted:e}: {truth:e} for {told:e}");
+    }
+    for basis in [
+        "ancf.elements = 16",
+        "ancf.elements = 36",
+        "ancf.elements = 44",
+        "ancf.elements = 58",
+        "rpim.nodes = 40",
+    ] {
+        let scene = scene(&text(&format!("basis.{basis},"), ""));
+        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
+            .expect("results");
+        let (truth, told) = judged(&results);
+        assert!(truth <= 3.0 * told, "{basis}: {truth:e} for {told:e}");
+        assert!(results.states().states.is_none(), "states that nobody asked for");
+    }
+}

@@ -2,15 +2,15 @@
 //! point, where errors of the first order are beside others that fall faster, or where all meshes err alike.
 
 use super::{Purpose, Round, Runner, coarser};
-use crate::accuracy::difference::{self, Difference, StrainJump};
+use crate::accuracy::difference::{self, Difference, StrainJump, is_path};
 use crate::accuracy::mesh::Mesh;
 use crate::accuracy::setting::{Family, Setting};
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::model::{Accuracy, Analysis, Discretization, Model};
+use crate::model::{Accuracy, Analysis, Discretization, Model, Place};
 use crate::numeric::plain;
 use crate::results::Results;
-use crate::run::stiffness_jumps as jumps_of_laws;
+use crate::run::{shapes_at, stiffness_jumps as jumps_of_laws};
 
 /// Part of the wanted error that may be due to strains that jump …
 const AT_JUMPS: f64 = 0.25;
@@ -22,6 +22,8 @@ const SHORTEST: f64 = 2e-4;
 /// With half of their length errors that fall with the first order are told by half.
 const TOLD_BY_HALF: f64 = 2.0;
 
+/// Most records of which it is known where their forces pass corners of laws.
+const RECORDS: usize = 64;
 /// What acts this near to a node, in cells, acts there: the error is the cube of it.
 const AT_NODE: f64 = 0.02;
 
@@ -55,11 +57,12 @@ impl Runner<'_, '_> {
         stations: &[Vec<f64>],
         setting: &Setting,
         results: &Results,
+        corners: &[Place],
     ) -> Result<Option<Difference>, String> {
         // What acts in a point within a cell makes an error by its place in the cell, which is another one in coarser cells.
         let beams = 0..self.model.beams.len();
         // Where a stiffness jumps, errors of the first order are beside others that fall so fast that coarser meshes show these only.
-        let corners = self.corners(results);
+        let corners = self.within_cells(corners);
         let is_unseen = |beam: &usize| {
             let acts = self.pointed[*beam] || !self.softer[*beam].is_empty() || !corners[*beam].is_empty();
             self.is_unseen(*beam) || acts
@@ -101,25 +104,43 @@ impl Runner<'_, '_> {
         Ok(Some(if at_jumps { difference.divided([TOLD_BY_HALF.recip(); 2]) } else { difference }))
     }
 
-    /// Where in each beam its forces pass corners of its laws within cells of the finer run, in the last state. What coarser meshes
-    /// have nodes at, too, they err at by as much. In motions such places wander.
-    fn corners(&self, results: &Results) -> Vec<Vec<f64>> {
-        let mut corners = vec![Vec::new(); self.model.beams.len()];
+    /// Where the forces of beams pass corners of their laws, in the last state of a run and, where they were kept, in the records before
+    /// it. In motions such places wander, and along a path no record is compared but the last.
+    pub(super) fn corners(&self, setting: &Setting, results: &Results) -> Vec<Place> {
+        if !self.has_corners() {
+            return Vec::new();
+        }
+        let states = results.states();
+        let mut places = jumps_of_laws(self.model, &states.last);
+        if states.states.is_some() && !is_path(self.analysis) {
+            let (model, analysis) = setting.apply(self.model, self.analysis);
+            let stride = states.parameter.len().div_ceil(RECORDS).max(1);
+            let shapes = |at: &f64| shapes_at(&model, &analysis, states, *at, self.options.cache).ok();
+            let before = states.parameter.iter().rev().skip(1).step_by(stride).filter_map(shapes);
+            places.extend(before.flat_map(|shapes| jumps_of_laws(self.model, &shapes)));
+        }
+        places
+    }
+
+    /// Whether laws may have corners where a state, or several, rest.
+    pub(super) fn has_corners(&self) -> bool {
         let linear = self.model.beams.iter().all(|beam| beam.section.is_linear());
-        if linear || matches!(self.analysis, Analysis::Dynamic(_)) {
-            return corners;
-        }
-        for place in jumps_of_laws(self.model, &results.states().last) {
-            let mesh = match &self.named[place.beam] {
+        !linear && !matches!(self.analysis, Analysis::Dynamic(_))
+    }
+
+    /// Those of `corners` that lie within cells of the finer run, for each beam. At what coarser meshes have nodes at, too, they err by
+    /// as much.
+    fn within_cells(&self, corners: &[Place]) -> Vec<Vec<f64>> {
+        let of = |beam: usize| {
+            let mesh = match &self.named[beam] {
                 Some(named) => named.clone(),
-                None => self.meshes[place.beam].halved(),
+                None => self.meshes[beam].halved(),
             };
-            let cells = mesh.cells();
-            if mesh.and(&[place.s]).cells() > cells {
-                corners[place.beam].push(place.s);
-            }
-        }
-        corners
+            let places: Vec<f64> = corners.iter().filter(|at| at.beam == beam).map(|at| at.s).collect();
+            let more = mesh.clone().and(&places);
+            more.nodes.into_iter().filter(|s| !mesh.nodes.contains(s)).collect()
+        };
+        (0..self.model.beams.len()).map(of).collect()
     }
 
     /// Shorter cells where the strain of an open beam jumps, if errors of the first order there are more than a part of the
