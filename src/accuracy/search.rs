@@ -1,6 +1,6 @@
 //! The search for a mesh and steps that are good enough.
 
-use super::difference::{Difference, jumps};
+use super::difference::{Difference, is_path, jumps};
 use super::judgement::{CAUTION, Estimate, Fall, Judged, LEAST_CONTRACTION, Seen, excess};
 use super::mesh::{self, CellErrors, Mesh};
 use super::missing::Missing;
@@ -69,6 +69,8 @@ const TOO_MANY_LOAD_STEPS: &str =
 /// Why a load is not known.
 const FIELD: &str = "a force field changes within the cells of its beam by more than their points see; name a `basis` with nodes where it acts, or \
                      let it be smoother";
+/// What an accuracy means along a path.
+const LAST_POINT: &str = "the error is that of the last point of the path: each run takes points of its own, and of those before nothing is known";
 /// Why nothing can be refined.
 const NAMED: &str =
     "the scene names the basis of every beam, and with it the mesh: leave it out, or give it more nodes";
@@ -450,6 +452,9 @@ impl<'a, 'o> Search<'a, 'o> {
         notes.extend(model_error::at_jumps(self.runner.model, |probe| {
             jumps(self.runner.model, last, probe.at)
         }));
+        if is_path(self.runner.analysis) && self.runner.wanted.is_some() {
+            notes.push(LAST_POINT.to_owned());
+        }
         results.states_mut().stations.clear();
         let solver = self.runner.steps_are_open() || self.runner.static_tolerance().is_some();
         let chosen = setting.toml_of(self.runner.model, |beam| self.runner.is_open(beam), solver);
