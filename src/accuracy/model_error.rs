@@ -160,6 +160,6 @@ mod tests {
             ..Trajectory::default()
         };
         assert_eq!(largest(2, &run(&[0.5, 1.0])), [[0.5, 3.0], [0.0, 5.0]]);
-        assert_eq!(largest(2, &run(&[0.0, 1.0])), [[0.5, 2.0], [0.0, 2.0]], "the beginning is no result");
+        assert_eq!(largest(2, &run(&[0.0, 1.0])), [[0.5, 2.0], [0.0, 0.0]], "the beginning is no result");
     }
 }
