@@ -73,6 +73,12 @@ pub struct Accurate {
     corners: Vec<Place>,
 }
 
+impl Accurate {
+    fn is_met(&self) -> bool {
+        self.results.run().error.as_ref().is_some_and(|error| error.met)
+    }
+}
+
 /// Solves a scene: with everything chosen that it leaves open where it asks for an accuracy, and
 /// else as it stands. Of a scene with stages these are the results of the last one; see
 /// [`solve_stages`] for all.
@@ -124,13 +130,23 @@ pub fn solve(
     options: Options<'_>,
 ) -> Result<Accurate, RunError> {
     let jumps = stiffness_jumps(model, analysis, open, wanted, &options);
-    let with_nodes = (!jumps.is_empty()).then(|| {
-        let mut model = model.clone();
-        model.nodes_at.extend(jumps);
-        model
-    });
-    let model = with_nodes.as_ref().unwrap_or(model);
-    Search::new(Runner::new(model, analysis, open, Some(wanted), options)).run()
+    let mut options = options;
+    let mut missed = None;
+    if !jumps.is_empty() {
+        let mut with_nodes = model.clone();
+        with_nodes.nodes_at.extend(jumps);
+        match Search::new(Runner::new(&with_nodes, analysis, open, Some(wanted), options.again())).run() {
+            Ok(found) if found.is_met() || !found.results.run().complete => return Ok(found),
+            found => missed = Some(found),
+        }
+    }
+    // Where such nodes are in the way of an equilibrium, other meshes may do.
+    let found = Search::new(Runner::new(model, analysis, open, Some(wanted), options)).run();
+    match (found, missed) {
+        (Ok(found), Some(Ok(missed))) if !found.is_met() => Ok(missed),
+        (Err(_), Some(missed)) => missed,
+        (found, _) => found,
+    }
 }
 
 /// Where there must be nodes since the stiffness of open beams jumps in equilibria, or in that about which they vibrate: where

@@ -160,6 +160,23 @@ impl<'o> Options<'o> {
         Self { start, observer: None, checkpoints, cache, states, frames, shape_points, stations, saved }
     }
 
+    /// The same options for one run of several.
+    pub(crate) fn again(&mut self) -> Options<'_> {
+        let Self { start, observer, checkpoints, cache, states, frames, shape_points, stations, saved } =
+            self;
+        Options {
+            start: *start,
+            observer: observer.as_mut().map(|observer| &mut **observer as _),
+            checkpoints: *checkpoints,
+            cache: *cache,
+            states: *states,
+            frames: *frames,
+            shape_points: *shape_points,
+            stations,
+            saved: *saved,
+        }
+    }
+
     fn detail(&self) -> Detail<'o> {
         Detail { frames: self.frames, shape_points: self.shape_points, stations: self.stations }
     }

@@ -345,30 +345,27 @@ impl<'a, 'o> Runner<'a, 'o> {
     ) -> Result<Results, RunError> {
         let (model, analysis) = setting.apply(self.model, self.analysis);
         let has_corners = self.has_corners();
-        let Options { start, observer, checkpoints, cache, states, frames, shape_points, stations: _, saved } =
-            &mut self.options;
         let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
         let modes = matches!(self.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
+        let (options, all) = (self.options.again(), purpose == Purpose::Results);
+        let shape_points = match purpose {
+            _ if wanted => options.shape_points,
+            Purpose::Positions | Purpose::Shapes if modes => {
+                let few = every(COARSER, options.shape_points);
+                let cells = self.meshes.iter().map(Mesh::cells).max().unwrap_or(0);
+                if 2 * cells < few { few } else { options.shape_points }
+            }
+            Purpose::Positions => 2,
+            Purpose::Shapes => every(COARSER, options.shape_points),
+            Purpose::Results => options.shape_points,
+        };
         let options = Options {
-            start: *start,
-            observer: observer.as_mut().map(|observer| &mut **observer as _),
-            checkpoints: *checkpoints,
-            cache: *cache,
-            states: (*states || has_corners) && purpose == Purpose::Results,
-            frames: if purpose == Purpose::Results { *frames } else { 0 },
-            shape_points: match purpose {
-                _ if wanted => *shape_points,
-                Purpose::Positions | Purpose::Shapes if modes => {
-                    let few = every(COARSER, *shape_points);
-                    let cells = self.meshes.iter().map(Mesh::cells).max().unwrap_or(0);
-                    if 2 * cells < few { few } else { *shape_points }
-                }
-                Purpose::Positions => 2,
-                Purpose::Shapes => every(COARSER, *shape_points),
-                Purpose::Results => *shape_points,
-            },
+            states: (options.states || has_corners) && all,
+            frames: if all { options.frames } else { 0 },
+            shape_points,
             stations,
-            saved: *saved && purpose == Purpose::Results,
+            saved: options.saved && all,
+            ..options
         };
         let results = model.solve_with(&analysis, options)?;
         let run = results.run();
