@@ -56,8 +56,8 @@ use search::Search;
 
 /// Accuracy of the equilibrium that tells where nodes must be.
 const PLACES: f64 = 1e-4;
-/// Such places that are nearer to each other, in beam lengths, share a node: in a cell the error is that of a corner times the square of
-/// its distance from the node.
+/// Such places of several equilibria that are nearer to each other, in beam lengths, share a node: in a cell the error is that of a corner
+/// times the square of its distance from the node. That of vibrations is not, and all of theirs have one.
 const NEAR: f64 = 2e-3;
 /// At so many places of each beam its forces are known, and linear between them.
 const ROWS: usize = 2001;
@@ -176,9 +176,10 @@ fn stiffness_jumps(
     };
     let shapes = &found.results.states().last;
     let length = |beam: usize| shapes.get(beam).and_then(|shape| shape.s.last()).copied().unwrap_or(0.0);
+    let near = if matches!(analysis, Analysis::Static(_)) { NEAR } else { 0.0 };
     let open_beams = found.corners.into_iter().filter(|place| open.beams.get(place.beam) == Some(&true));
     open_beams.fold(Vec::new(), |mut places: Vec<Place>, place| {
-        let near = NEAR * length(place.beam);
+        let near = near * length(place.beam);
         if places.iter().all(|other| other.beam != place.beam || (other.s - place.s).abs() > near) {
             places.push(place);
         }

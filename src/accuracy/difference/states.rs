@@ -17,10 +17,9 @@ const STRAIGHT: f64 = 1e-9;
 
 /// A tangent r' that is too long by a small part makes the curvature r' × r''/|r'|² wrong by at most so many times that part.
 const OF_CURVATURE: f64 = 2.0;
-/// An axial force that differs on both sides of a place by more than this part of the largest, or of M/L, jumps there.
+/// An axial force that differs on both sides of a place by more than this part of the largest, or of M/L, jumps there; so does a bending
+/// moment, by this part of the largest.
 const JUMP: f64 = 1e-6;
-/// The same of a bending moment, and of the largest, both of which come from curvatures of a mesh.
-const JUMP_OF_MOMENT: f64 = 1e-3;
 
 /// The parts of the largest errors of positions and of angles on its beam that those of a probe are at least.
 const LEAST: (f64, f64) = (0.1, 0.04);
@@ -322,8 +321,7 @@ fn bends(model: &Model, last: &[Shape], at: Place) -> bool {
     let mut jumps = imposed.flat_map(|imposed| imposed.curvature.jumps()).chain(bending.jumps());
     let moment = &shape.bending_moment;
     let here = |s: f64| (s - at.s).abs() <= same_place(&shape.s);
-    step(shape, moment, at.s) > JUMP_OF_MOMENT * most_of(moment)
-        || is_twice(&shape.s, at.s) && jumps.any(here)
+    step(shape, moment, at.s) > JUMP * most_of(moment) || is_twice(&shape.s, at.s) && jumps.any(here)
 }
 
 fn most_of(values: &[f64]) -> f64 {
@@ -585,7 +583,7 @@ mod tests {
             };
             jumps(scene.model(), &[shape], Place::new(0, 1.0))
         };
-        assert!(couple(0.01) && !couple(1e-3));
+        assert!(couple(1e-5) && !couple(1e-6));
         assert!(at(0, 1.0, [5.0, 0.0]) && !at(0, 0.5, [5.0, 0.0]) && !at(0, 1.0, [5.0, 5.0 - 1e-6]));
         assert!(at(1, 2.0, [5.0, 5.0]) && !at(1, 1.0, [5.0, 5.0]));
         let fine = Shape {

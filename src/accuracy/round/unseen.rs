@@ -59,10 +59,10 @@ impl Runner<'_, '_> {
         results: &Results,
         corners: &[Place],
     ) -> Result<Option<Difference>, String> {
+        let corners = self.within_cells(corners);
         // What acts in a point within a cell makes an error by its place in the cell, which is another one in coarser cells.
         let beams = 0..self.model.beams.len();
         // Where a stiffness jumps, errors of the first order are beside others that fall so fast that coarser meshes show these only.
-        let corners = self.within_cells(corners);
         let is_unseen = |beam: &usize| {
             let acts = self.pointed[*beam] || !self.softer[*beam].is_empty() || !corners[*beam].is_empty();
             self.is_unseen(*beam) || acts
@@ -128,8 +128,8 @@ impl Runner<'_, '_> {
         !linear && !matches!(self.analysis, Analysis::Dynamic(_))
     }
 
-    /// Those of `corners` that lie within cells of the finer run, for each beam. At what coarser meshes have nodes at, too, they err by
-    /// as much.
+    /// Those of `corners` that lie within cells of the finer run, for each beam. Beside a node that coarser meshes have, too, these err by
+    /// as much as the finer run.
     fn within_cells(&self, corners: &[Place]) -> Vec<Vec<f64>> {
         let of = |beam: usize| {
             let mesh = match &self.named[beam] {
