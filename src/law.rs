@@ -375,29 +375,56 @@ impl Law {
             Self::Product(_) => {
                 // In parts in which no harmonic is fast.
                 if self.has_expression() {
-                    return self.in_parts(start, h);
+                    return self.in_parts(start, h).0;
                 }
                 let parts = (self.fastest() * h.abs() / SLOW).ceil().clamp(1.0, MOST_PARTS);
                 self.in_equal_parts(start, h, parts as usize).0
             }
-            Self::Expression(_) => self.in_parts(start, h),
+            Self::Expression(_) => self.in_parts(start, h).0,
             _ => quadrature(|x| h.mul_add(x, start), |t| self.at(t)[0]),
         }
     }
 
     /// [`Self::moments`] of a law of which nobody knows how fast it is: in parts, twice as many until
-    /// that changes nothing.
-    fn in_parts(&self, start: f64, h: f64) -> [f64; 2] {
+    /// that changes nothing but round-off; and how many parts those are.
+    fn in_parts(&self, start: f64, h: f64) -> ([f64; 2], usize) {
         let (mut before, _) = self.in_equal_parts(start, h, 1);
+        let mut round_off = None;
         let mut parts = 2;
         loop {
             let (sums, largest) = self.in_equal_parts(start, h, parts);
             let change = (sums[0] - before[0]).abs().max((sums[1] - before[1]).abs());
             // A law that is not a number anywhere is none in its sums either.
             if change.is_nan() || change <= SETTLED * largest || parts as f64 >= MOST_PARTS {
-                return sums;
+                return (sums, parts);
+            }
+            // A difference of nearly equal numbers, as 1 - cos(t) is at first, never settles so far.
+            let times = || GAUSS_6.iter().map(|(x, _)| h.mul_add(*x, start));
+            let noise =
+                round_off.get_or_insert_with(|| times().map(|t| self.round_off(t)).fold(0.0, f64::max));
+            if noise.is_finite() && change <= *noise {
+                return (sums, parts);
             }
             (before, parts) = (sums, 2 * parts);
+        }
+    }
+
+    /// An upper bound of the round-off of its value, to first order.
+    fn round_off(&self, t: f64) -> f64 {
+        match self {
+            Self::Expression(expression) => expression.terms[0].round_off(&[t]),
+            Self::Sum(laws) => laws.iter().map(|law| law.round_off(t)).sum(),
+            Self::Product(laws) => {
+                let [product, error] = laws.iter().fold([1.0_f64, 0.0_f64], |[product, error], law| {
+                    let [value, ..] = law.at(t);
+                    [product * value, product.abs().mul_add(law.round_off(t), error * value.abs())]
+                });
+                f64::EPSILON.mul_add(product.abs(), error)
+            }
+            _ => {
+                let [value, rate, _] = self.at(t);
+                f64::EPSILON * (value.abs() + (rate * t).abs())
+            }
         }
     }
 
@@ -561,6 +588,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A difference of nearly equal numbers, and a harmonic long after its start, which round-off keeps from settling.
+    #[test]
+    fn round_off_is_not_integrated_any_finer() {
+        for (text, start, h) in
+            [("1 - cos(t)", 1e-7, 1e-6), ("sin(1e6*t)", 20.0, 1e-6), ("t - t^3", 1.0, 1e-12)]
+        {
+            let law = written(text, Vec::new());
+            let (sums, parts) = law.in_parts(start, h);
+            assert!(parts <= 8, "{text}: {parts} parts");
+            let (finer, _) = law.in_equal_parts(start, h, 64);
+            let error = (sums[0] - finer[0]).abs().max((sums[1] - finer[1]).abs());
+            assert!(error <= law.round_off(start + h), "{text}: {error:.1e}");
+        }
+        // What is not round-off is integrated as finely as ever.
+        let law = written("cos(1e3*t)", Vec::new());
+        let [mean, _] = law.in_parts(0.0, 1.0).0;
+        assert!((mean - 1e-3 * 1e3_f64.sin()).abs() < 1e-12);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 mod unseen;
 
-use super::difference::{self, Difference, StrainJump, stations, stiffness_jumps};
+use super::difference::{self, Difference, StrainJump, jumps_of_modes, stations, stiffness_jumps};
 use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
 use super::saturation::{ends_prevail, saturates};
@@ -91,7 +91,7 @@ pub(super) struct Runner<'a, 'o> {
     pointed: Vec<bool>,
     /// A place within a string where something acts in a point.
     pub kink: Option<Place>,
-    /// Where in each beam the stiffness against stretching jumps.
+    /// Where in each beam the stiffness against stretching jumps, or the strain of a mode may.
     softer: Vec<Vec<f64>>,
     /// Where in each open beam the strain jumps, and how long cells beside that may be in the coarse runs \[m\].
     short: Vec<Vec<[f64; 2]>>,
@@ -200,7 +200,11 @@ impl<'a, 'o> Runner<'a, 'o> {
         };
         let pointed = named.iter().enumerate().map(pointed).collect();
         let kink = difference::kink(model, &meshes);
-        let softer = |(index, mesh): (usize, &Mesh)| stiffness_jumps(model, index, mesh.length());
+        let jumps = match analysis {
+            Analysis::Modal(_) | Analysis::Buckling(_) => jumps_of_modes,
+            _ => stiffness_jumps,
+        };
+        let softer = |(index, mesh): (usize, &Mesh)| jumps(model, index, mesh.length());
         let softer = meshes.iter().enumerate().map(softer).collect();
         let saturated = |(beam, mesh): (&Beam, &Mesh)| saturates(&beam.discretization, mesh.length());
         let saturated = model.beams.iter().zip(&meshes).map(saturated).collect();

@@ -175,6 +175,46 @@ fn cells_go_where_strains_jump() {
     assert!(cells < 1400 / 4, "{cells}");
 }
 
+/// A bar of unit length, stiffness and mass that is held at one end, with a mass of 1 in its middle, vibrates along its axis with
+/// angular frequencies k tan k = 2 (Abramowitz & Stegun, *Handbook of Mathematical Functions*, table 4.20). The strain jumps at the
+/// mass, by which elements err in proportion to their length.
+#[test]
+fn strains_of_modes_jump_where_something_acts_within_a_span() {
+    let exact = [1.07687, 3.64360, 6.57833].map(|k| k / TAU);
+    for basis in ["ancf.elements = 4", "ancf.elements = 20", "ancf.elements = 21", "rpim.nodes = 21"] {
+        let arm = cantilever(1.0, 400.0, "effect.point_mass = [{ beam = 'arm', at = 0.5, mass = 1 }]");
+        let arm = arm.replace("mass_per_length", &format!("basis.{basis}, mass_per_length"));
+        let scene = scene(&format!("{arm}analysis.modal.count = 3"));
+        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
+            .expect("results");
+        let told = &error(&results).eigenvalues;
+        for ((f, exact), told) in results.eigenvalues().iter().zip(exact).zip(told) {
+            let (truth, told) = ((f / exact - 1.0).abs(), told / exact);
+            assert!(
+                truth <= 1.5 * told && told <= 3.0 * truth,
+                "{basis}, {exact:.3}: {truth:.1e}, told {told:.1e}"
+            );
+        }
+    }
+}
+
+/// A support within a span takes a force along the beam, so that the strain jumps there.
+#[test]
+fn the_strain_jumps_at_a_support_within_a_span() {
+    let arm = cantilever(1.0, 400.0, "effect.force = [{ beam = 'arm', at = 'end', value = [0.1, 0] }]");
+    let support = "[{ beam = 'arm', at = 0.3, fix = ['x'] }, ";
+    for elements in [5, 10, 20] {
+        let arm = arm.replace("support = [", &format!("support = {support}"));
+        let arm =
+            arm.replace("mass_per_length", &format!("basis.ancf.elements = {elements}, mass_per_length"));
+        let scene = scene(&format!("{arm}analysis.static = {{}}"));
+        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
+            .expect("results");
+        let (truth, told) = ((last(&results).x - 1.07).abs(), error(&results).estimated.result);
+        assert!(truth <= 1.5 * told && told <= 5.0 * truth, "{elements}: {truth:.1e}, told {told:.1e}");
+    }
+}
+
 /// Forces along a straight bar: a point at s has moved by Σ F min(s, a)/EA. Probes lie at the forces, where
 /// elements err most, beside them and at the end, where they do not err at all.
 #[test]

@@ -74,12 +74,29 @@ pub(in crate::accuracy) fn strain_jumps(
 
 /// Where within a beam the strain may jump, but for [`stiffness_jumps`].
 fn places(model: &Model, beam: usize, length: f64) -> Vec<f64> {
-    let points = model.parts.iter().filter_map(|part| part.point());
-    let of_beam = points.filter(|at: &Place| at.beam == beam).map(|at| at.s).chain(model.breaks(beam));
+    let of_beam =
+        model.points().filter(|at: &Place| at.beam == beam).map(|at| at.s).chain(model.breaks(beam));
     let mut places = within(of_beam, length);
     let softer = stiffness_jumps(model, beam, length);
     places.retain(|s| softer.iter().all(|other| (s - other).abs() > SAME * length));
     places
+}
+
+/// Where within a beam the strain of a mode may jump. Nobody knows beforehand by how much, since modes have no size; of strings, and of
+/// beams that keep their length, it does not.
+pub(in crate::accuracy) fn jumps_of_modes(model: &Model, beam: usize, length: f64) -> Vec<f64> {
+    let Section { axial_stiffness, bending_stiffness, .. } = &model.beams[beam].section;
+    if axial_stiffness.is_none() || bending_stiffness.is_none() {
+        return stiffness_jumps(model, beam, length);
+    }
+    within(
+        model
+            .points()
+            .filter(|at| at.beam == beam)
+            .map(|at| at.s)
+            .chain(stiffness_jumps(model, beam, length)),
+        length,
+    )
 }
 
 /// Where within a beam its stiffness against stretching, or its coupling, jumps. The strain that is a compromise there makes the

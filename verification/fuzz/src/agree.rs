@@ -91,7 +91,11 @@ pub fn campaign(task: &Task<'_>) -> (Report, Vec<Written>) {
             let (mut report, found) = scene(task, &weights, index);
             report.slowest = (begin.elapsed().as_secs_f64(), index);
             for written in &found {
-                keep(task, written);
+                if let Some(out) = task.out {
+                    let path = out.join(format!("{}.toml", written.name));
+                    eprintln!("{}: {}", path.display(), written.what);
+                    keep(&path, &written.scene);
+                }
             }
             let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
             all.0.add(report);
@@ -114,6 +118,10 @@ fn scene(task: &Task<'_>, weights: &Weights, index: usize) -> (Report, Vec<Writt
     let mut rng = Rng::with_seed(task.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ index as u64);
     let Some(case) = legal(weights, &mut rng, &mut report) else { return (report, Vec::new()) };
     report.scene(&case.scene);
+    if let (Some(out), Some(_)) = (task.out, task.only) {
+        // Before it is run, since a run may take long.
+        keep(&out.join(format!("{index}.toml")), &case.frame.write(&case.scene).to_string());
+    }
     let base = outcome::run(&case.scene, &case.frame);
     let kind = match &base {
         Outcome::Solved(seen) if seen.warnings.is_empty() => "solved",
@@ -176,11 +184,8 @@ fn legal(weights: &Weights, rng: &mut Rng, report: &mut Report) -> Option<Case> 
     None
 }
 
-fn keep(task: &Task<'_>, written: &Written) {
-    let Some(out) = task.out else { return };
-    let path = out.join(format!("{}.toml", written.name));
-    eprintln!("{}: {}", path.display(), written.what);
-    if let Err(error) = std::fs::write(&path, &written.scene) {
+fn keep(path: &Path, scene: &str) {
+    if let Err(error) = std::fs::write(path, scene) {
         eprintln!("{}: {error}", path.display());
     }
 }

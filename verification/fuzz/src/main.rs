@@ -53,7 +53,7 @@ struct Arguments {
     /// With `--agree`: how many scenes at most
     #[arg(long, default_value_t = usize::MAX)]
     scenes: usize,
-    /// With `--agree`: the one scene to look at
+    /// With `--agree`: the one scene to look at, which is written as it was drawn
     #[arg(long)]
     only: Option<usize>,
     /// With `--agree`: how many scenes at once; as many as processors where nothing is said
