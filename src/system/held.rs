@@ -32,6 +32,8 @@ impl System {
     /// Lets the rows of tendons be open in the state `q` at load factor 0.
     pub(super) fn begin_lengths_open(&mut self, q: &[f64]) {
         for k in 0..self.terms.held.len() {
+            // Not what is left of another state, such as the one in which the scene begins.
+            self.terms.held[k].begin_open(0.0);
             let open = self.excess(&self.terms.held[k], 0.0, q);
             let open = if open.abs() > ROUND_OFF * self.length { open } else { 0.0 };
             self.terms.held[k].begin_open(open);

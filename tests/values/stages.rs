@@ -682,6 +682,35 @@ fn what_holds_on_keeps_its_force_whatever_goes() {
     }
 }
 
+/// A tendon of given length on a beam that begins bent keeps its length in later stages: its tension is T (e²/EI + 1/EA) L = Δ, and it
+/// turns the end by T e L/EI.
+#[test]
+fn a_tendon_keeps_its_length_where_the_beam_began_bent() {
+    let found = stages(
+        "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 8,
+                      initial_shape.points = [[0, 0], [0.5, 0.1], [0.9, 0.3]] }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+        probe = [{ name = 'foot', beam = 'arm', at = 'start' }, { name = 'tip', beam = 'arm', at = 'end' }]
+        effect.tendon = [{ beam = 'arm', offset = 0.01, shortening = 2e-3 }]
+        effect.moment = [{ beam = 'arm', at = 'end', value = 0.1, stage = 'two', until = 'three' }]
+        stage = [{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static.steps = 2 },
+                 { name = 'three', analysis.static.steps = 2 }]\n",
+    );
+    let turn = |written: &Written| {
+        written.last("probes.csv", "tip.angle") - written.last("probes.csv", "foot.angle")
+    };
+    for (stage, written) in found.iter().enumerate() {
+        // What the moment turns, the tendon takes but for the part by which it is stretched in turn.
+        let moment = if stage == 1 { 0.1 } else { 0.0 };
+        let tension = (2e-3 - 0.01 * moment) / (1e-4 + 1e-4);
+        near(turn(written), 0.01 * tension + moment, 1e-8, &format!("the turn in stage {stage}"));
+    }
+    for column in ["tip.x", "tip.y"] {
+        let began = found[1].column("probes.csv", column)[0];
+        near(began, found[0].last("probes.csv", column), 1e-9, column);
+    }
+}
+
 /// A cantilever with `effects`, whose state is looked at inside an element.
 fn cantilever(effects: &str, stages: &str) -> Vec<Written> {
     self::stages(&format!(
