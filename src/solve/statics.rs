@@ -236,11 +236,11 @@ fn loaded(
     }
 }
 
-/// Whether a path of load steps ends where it begins because nothing holds the structure there but what strains a given shape, or
-/// because a beam has no stiffness along its axis yet.
+/// Whether a path of load steps ends because nothing holds the structure but its loads, where it began from a state that was reached
+/// before, or there because nothing does but what strains a given shape, or because a beam has no stiffness along its axis yet.
 fn is_loose(system: &System, stuck: &NoStep) -> bool {
-    let is_loose = system.is_floppy() && system.starts_bent() || system.goes_slack();
-    is_loose && stuck.load < NEXT_TO_NOTHING
+    let at_start = system.is_floppy() && system.starts_bent() || system.goes_slack();
+    at_start && stuck.load < NEXT_TO_NOTHING || system.is_floppy() && system.is_taken_up()
 }
 
 /// The state at load factor 0: where a given shape, or one in which springs are stretched, comes to
