@@ -14,7 +14,7 @@ use crate::model::{
     RPIM_GAUSS_POINTS, Static, StepControl,
 };
 use crate::results::{Errors, Results, RunForError};
-use crate::run::{Options, RunError};
+use crate::run::{Control, Options, Progress, RunError};
 use unseen::has_points;
 
 /// Smallest tolerance of any run.
@@ -347,6 +347,17 @@ impl<'a, 'o> Runner<'a, 'o> {
         setting: &Setting,
         purpose: Purpose,
     ) -> Result<Results, RunError> {
+        self.solve_within(usize::MAX, stations, setting, purpose)
+    }
+
+    /// [`Self::solve`], stopped after so many Newton iterations.
+    fn solve_within(
+        &mut self,
+        iterations: usize,
+        stations: &[Vec<f64>],
+        setting: &Setting,
+        purpose: Purpose,
+    ) -> Result<Results, RunError> {
         let (model, analysis) = setting.apply(self.model, self.analysis);
         let has_corners = self.has_corners();
         let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
@@ -363,7 +374,14 @@ impl<'a, 'o> Runner<'a, 'o> {
             Purpose::Shapes => every(COARSER, options.shape_points),
             Purpose::Results => options.shape_points,
         };
+        let mut observer = options.observer;
+        let mut watch = |now: &Progress| match &mut observer {
+            _ if now.newton_iterations > iterations => Control::Stop,
+            Some(observer) => observer(now),
+            None => Control::Continue,
+        };
         let options = Options {
+            observer: Some(&mut watch),
             states: (options.states || has_corners) && all,
             frames: if all { options.frames } else { 0 },
             shape_points,
@@ -430,6 +448,11 @@ impl<'a, 'o> Runner<'a, 'o> {
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
             Err(error) => Err(format!("on half as many cells there is no result: {error}")),
         };
+        let difference = difference.and_then(|difference| {
+            let steps = self.beside_chosen_steps(&stations, &setting, &results, &difference)?;
+            unseen = both(unseen.take(), steps);
+            Ok(difference)
+        });
         if let (Ok(difference), Results::Trajectory(run)) = (&difference, &results) {
             let nodes = self.named.iter().zip(&self.meshes).map(|(named, mesh)| match named {
                 Some(named) => named.nodes.clone(),

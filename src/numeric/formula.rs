@@ -556,7 +556,8 @@ mod tests {
     #[test]
     fn round_off_is_bounded_and_not_by_much_more() {
         // Beside each formula the same without cancellation, and by how many units of the last digit of 1 it errs at most.
-        let pairs: [(&str, fn(f64) -> f64, [f64; 2]); 5] = [
+        type Pair = (&'static str, fn(f64) -> f64, [f64; 2]);
+        let pairs: [Pair; 5] = [
             ("1 - cos(x)", |x| 2.0 * (0.5 * x).sin().powi(2), [1.0, 4.0]),
             ("exp(x) - 1 - x", |x| x.exp_m1() - x, [1.0, 6.0]),
             ("(1 + x)^3 - 1", |x| x * (3.0 + x * (3.0 + x)), [1.0, 9.0]),

@@ -37,6 +37,8 @@ const JAMMED_WORK: f64 = 1e-5;
 const LEAST_STRAIN: f64 = 1e-9;
 /// Strain within the cells of a beam that round-off of positions makes.
 const ROUND_OFF: f64 = 1e-12;
+/// Part of the kinetic energy that bends a beam by the round-off of a motion.
+const SLIGHT: f64 = 1e-12;
 /// Places that are nearer to each other are one, in lengths of a cell.
 const SAME: f64 = 1e-9;
 /// Gauss points for bending that are too few where bending strains are large …
@@ -189,9 +191,9 @@ impl Locking {
         })
     }
 
-    /// Messages on beams that lock.
-    pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
-        self.beams.iter().filter_map(LockingBeam::warning)
+    /// Messages on beams that lock, where their bending matters beside the largest `kinetic` energy \[J\].
+    pub fn warnings(&self, kinetic: f64) -> impl Iterator<Item = String> + '_ {
+        self.beams.iter().filter_map(move |beam| beam.warning(SLIGHT * kinetic))
     }
 }
 
@@ -277,9 +279,10 @@ impl LockingBeam {
         0.5 * self.axial_stiffness.mean(self.length) * self.length * strain * strain
     }
 
-    fn warning(&self) -> Option<String> {
+    /// A message where it locks in states that are bent with an energy of `slight` \[J\] or more.
+    fn warning(&self, slight: f64) -> Option<String> {
         self.bending_stiffness.as_ref()?;
-        let least = self.of_strain(ROUND_OFF);
+        let least = self.of_strain(ROUND_OFF).max(slight);
         let most = self.seen.iter().fold(0.0_f64, |most, [bend, ..]| most.max(*bend));
         // A curvature that round-off makes has less energy than such a strain.
         let bent = self.seen.iter().filter(|[bend, ..]| *bend > least.max(STRAIGHT * most));
@@ -382,6 +385,14 @@ mod tests {
         assert!((beam.energies(&q)[2] + last - all).abs() < 1e-12 * all && last > 0.0 && last < all);
     }
 
+    /// A rod that slides is bent by round-off only.
+    #[test]
+    fn what_round_off_bends_does_not_lock() {
+        let (mut locking, _) = watched();
+        locking.beams[1].seen = vec![[2.0, 1.0, 0.02]];
+        assert_eq!([0.0, 1e12, 3e12].map(|kinetic| locking.warnings(kinetic).count()), [1, 0, 0]);
+    }
+
     /// The worst of the states that are bent by a tenth of the most at least, and where what is locked
     /// is more than a thousandth of all energy.
     #[test]
@@ -389,7 +400,7 @@ mod tests {
         let (mut locking, _) = watched();
         let told = |locking: &mut Locking, seen: &[[f64; 3]]| {
             locking.beams[1].seen = seen.into();
-            locking.warnings().next()
+            locking.warnings(0.0).next()
         };
         for (seen, percent) in [
             (&[[2.0, 1.0, 0.0101]][..], Some("0.5 %")),

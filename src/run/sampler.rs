@@ -599,7 +599,7 @@ impl<'a> Sampler<'a> {
                 History::Before(before) => {
                     let part = &self.system.beams()[*beam];
                     // A string that nothing loads yet has no shape of its own: the turns count from where it was laid out.
-                    let is_first = trajectory.parameter.len() == 2 && self.system.starts_bent();
+                    let is_first = trajectory.parameter.len() <= 2 && self.system.starts_bent();
                     let is_slack = is_first && self.model.beams[*beam].section.bending_stiffness.is_none();
                     let (before, from) = if is_slack {
                         let start = self.system.start();
@@ -680,7 +680,7 @@ impl<'a> Sampler<'a> {
         let work = trajectory.energy.last().map_or(0.0, |energy| energy.potential.abs());
         trajectory.run.warnings.extend(locking.jammed(&trajectory.last, work));
         trajectory.run.warnings.extend(unheld(self.model, &trajectory.last, &trajectory.run.undeformed));
-        trajectory.run.warnings.extend(locking.warnings());
+        trajectory.run.warnings.extend(locking.warnings(0.0));
         trajectory.run.warnings.extend(loose.warnings());
         trajectory.run.warnings.extend(reach.warnings());
         trajectory.parameter.iter().for_each(|at| tendons.see_factor(*at));
@@ -965,7 +965,8 @@ impl<'a> Sampler<'a> {
             ));
         }
         trajectory.run.warnings.extend(unheld(self.model, &trajectory.last, &trajectory.run.undeformed));
-        trajectory.run.warnings.extend(locking.warnings());
+        let kinetic = trajectory.energy.iter().map(|energy| energy.kinetic).fold(0.0, f64::max);
+        trajectory.run.warnings.extend(locking.warnings(kinetic));
         trajectory.run.warnings.extend(loose.warnings());
         trajectory.run.warnings.extend(reach.warnings());
         trajectory.parameter.iter().for_each(|at| tendons.see_factor(*at));

@@ -1,13 +1,13 @@
 //! Errors that coarser meshes do not show: of parts with one cell, of shape functions that are others there, and of what acts in a
 //! point, where errors of the first order are beside others that fall faster, or where all meshes err alike.
 
-use super::{Purpose, Round, Runner, coarser};
+use super::{Purpose, Round, Runner, coarser, short};
 use crate::accuracy::difference::{self, Difference, StrainJump, is_path};
 use crate::accuracy::mesh::Mesh;
-use crate::accuracy::setting::{Family, Setting};
+use crate::accuracy::setting::{Family, Setting, Solver};
 use crate::basis::Basis;
 use crate::centreline::Curve;
-use crate::model::{Accuracy, Analysis, Discretization, Model, Place};
+use crate::model::{Accuracy, Analysis, Discretization, Integrator, Model, Place, StepControl};
 use crate::numeric::plain;
 use crate::results::Results;
 use crate::run::{shapes_at, stiffness_jumps as jumps_of_laws};
@@ -22,6 +22,10 @@ const SHORTEST: f64 = 2e-4;
 /// With half of their length errors that fall with the first order are told by half.
 const TOLD_BY_HALF: f64 = 2.0;
 
+/// Smallest and largest tolerance of a motion with contacts that tells what steps of a given length err by …
+const TOLERANCES: [f64; 2] = [1e-6, 1e-3];
+/// … and how many times as many iterations it may take.
+const MOST_ITERATIONS: usize = 10;
 /// Most records of which it is known where their forces pass corners of laws.
 const RECORDS: usize = 64;
 /// What acts this near to a node, in cells, acts there: the error is the cube of it.
@@ -102,6 +106,38 @@ impl Runner<'_, '_> {
         }
         let difference = self.difference(&finer, results)?;
         Ok(Some(if at_jumps { difference.divided([TOLD_BY_HALF.recip(); 2]) } else { difference }))
+    }
+
+    /// What the results of a `setting` with steps of a given length differ by from those with steps that follow the motion, where there
+    /// are contacts: what begins and ends within a step, an impact or the slip before friction holds, errs by as much with steps of twice the
+    /// length. `None` where the steps do follow it, or nothing touches.
+    pub(super) fn beside_chosen_steps(
+        &mut self,
+        stations: &[Vec<f64>],
+        setting: &Setting,
+        results: &Results,
+        difference: &Difference,
+    ) -> Result<Option<Difference>, String> {
+        let fixed = match setting.solver {
+            Solver::Integrator(integrator) => matches!(integrator.step_control(), StepControl::Fixed(_)),
+            _ => false,
+        };
+        if !fixed || !self.model.has_contact() || !results.run().complete {
+            return Ok(None);
+        }
+        let [least, most] = TOLERANCES;
+        let tolerance = StepControl::Tolerance(short(difference.errors.result.clamp(least, most)));
+        let chosen = Setting { solver: Solver::Integrator(Integrator::usual(tolerance)), ..setting.clone() };
+        let iterations = MOST_ITERATIONS.saturating_mul(results.run().statistics.newton_iterations);
+        let followed = self.solve_within(iterations, stations, &chosen, Purpose::Shapes).map_err(|error| {
+            format!("with steps that follow the contacts, by which errors are told that others of a given length do not show, there is no result: {error}")
+        })?;
+        if !followed.run().complete {
+            return Err(format!(
+                "steps that follow the contacts take more than {MOST_ITERATIONS} times the iterations of these: give a `tolerance` in place of a `step`"
+            ));
+        }
+        self.difference(&followed, results).map(Some)
     }
 
     /// Where the forces of beams pass corners of their laws, in the last state of a run and, where they were kept, in the records before

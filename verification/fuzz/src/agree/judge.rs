@@ -173,7 +173,7 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
     finding(way, says, other.to_owned())
 }
 
-/// Twice the error of a coarse mesh of strings that hang still. A cell that would have to kink where a force
+/// Two errors of a coarse mesh of strings that hang still, as a finer one that errs by a third tells them. A cell that would have to kink where a force
 /// acts, or fold up, has several equilibria, each of which has this error, so that two of them differ by up to twice as much.
 fn error_of_strings(case: &Case) -> f64 {
     let Case { scene, frame, .. } = case;
@@ -183,7 +183,7 @@ fn error_of_strings(case: &Case) -> f64 {
     }
     let Some(finer) = settings::finer(scene) else { return 0.0 };
     match (outcome::run(scene, frame), outcome::run(&finer, frame)) {
-        (Outcome::Solved(a), Outcome::Solved(b)) => 2.0 * gap::between(&a, &b, Records::Last).places,
+        (Outcome::Solved(a), Outcome::Solved(b)) => 3.0 * gap::between(&a, &b, Records::Last).places,
         _ => 0.0,
     }
 }
@@ -216,11 +216,8 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         return Verdict::Warned;
     }
     let same = a.counts == b.counts;
-    let free_end = settings::ends_by_points(scene);
-    let factors = [a, b].map(|seen| seen.parameter.last().copied().unwrap_or(0.0));
-    let elsewhere = (factors[0] - factors[1]).abs() > FORCES * factors[0].abs();
     // Round-off may change the last of its steps.
-    if free_end && (!same || elsewhere) {
+    if settings::ends_by_points(scene) && (!same || ends_elsewhere(a, b)) {
         return Verdict::NotApplicable;
     }
     // So it may the steps before a turn that no tolerance bounds.
@@ -240,7 +237,7 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         () if accuracy.is_some() => settings::tolerance(scene),
         // Modes after a motion are those of a state that errs by its tolerance.
         () if modes => EIGENVALUES.max(chosen.map_or(0.0, |_| settings::tolerance(scene))),
-        () if free_end => FORCES,
+        () if settings::ends_by_points(scene) => FORCES,
         () => settings::tolerance(scene),
     };
     // Friction depends on the path: where round-off changes which load steps are taken, both runs err by their own.
@@ -566,6 +563,12 @@ fn estimated(gap: &Gap, estimate: f64, least: f64) -> Measured {
     }
 }
 
+/// Whether two paths end at other load factors.
+fn ends_elsewhere(a: &Seen, b: &Seen) -> bool {
+    let [a, b] = [a, b].map(|seen| seen.parameter.last().copied().unwrap_or(0.0));
+    (a - b).abs() > FORCES * a.abs()
+}
+
 /// Runs a scene for an accuracy and for a hundredth of it.
 fn accurate(case: &Case, rng: &mut Rng) -> Verdict {
     let Case { scene, frame, .. } = case;
@@ -578,6 +581,10 @@ fn accurate(case: &Case, rng: &mut Rng) -> Verdict {
         [Ok(seen), Ok(finest)] => [seen, finest],
         [Err(verdict), _] | [_, Err(verdict)] => return verdict,
     };
+    // On another mesh a path takes other steps.
+    if settings::ends_by_points(scene) && ends_elsewhere(&seen, &finest) {
+        return Verdict::NotApplicable;
+    }
     let moves = settings::motion(scene).is_some();
     let gap = gap::between(&seen, &finest, if moves { Records::Common } else { Records::Last });
     let allowed = ALLOWED * wanted + round_off(scene);
