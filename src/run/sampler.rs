@@ -591,29 +591,29 @@ impl<'a> Sampler<'a> {
             self.probes.iter().zip(&mut trajectory.probes).enumerate()
         {
             let fields = view.fields(q);
-            let angle = match history {
-                History::Angles(angles) => {
-                    let known = angles.get(probe).copied().filter(|angle| angle.is_finite());
-                    known.unwrap_or_else(|| fields.angle())
-                }
-                History::Before(before) => {
-                    let part = &self.system.beams()[*beam];
-                    // A string that nothing loads yet has no shape of its own: the turns count from where it was laid out.
-                    let is_first = trajectory.parameter.len() <= 2 && self.system.starts_bent();
-                    let is_slack = is_first && self.model.beams[*beam].section.bending_stiffness.is_none();
-                    let (before, from) = if is_slack {
-                        let start = self.system.start();
-                        (Some(start), Some(view.fields(start).angle()))
-                    } else {
-                        (before, series.samples.last().map(|sample| sample.angle))
-                    };
-                    let turned = before.map_or(0.0, |before| {
-                        let turns = turns[*beam].get_or_insert_with(|| turning::turns(part, before, q));
-                        turns[turning::nearest(part, view.s()[0])]
-                    });
-                    unfold(fields.angle(), from.map(|angle| angle + turned))
-                }
+            // A string that nothing loads yet has no shape of its own: the turns of the first two records count from where it was laid out.
+            let is_first = trajectory.parameter.len() <= 2 && self.system.starts_bent();
+            let is_slack = is_first && self.model.beams[*beam].section.bending_stiffness.is_none();
+            let start = is_slack.then(|| self.system.start());
+            let known = match history {
+                History::Angles(angles) => angles.get(probe).copied().filter(|angle| angle.is_finite()),
+                History::Before(_) => None,
             };
+            let angle = known.unwrap_or_else(|| {
+                let (before, from) = match (start, history) {
+                    (Some(start), _) => (Some(start), Some(view.fields(start).angle())),
+                    (None, History::Before(before)) => {
+                        (before, series.samples.last().map(|sample| sample.angle))
+                    }
+                    (None, History::Angles(_)) => (None, None),
+                };
+                let turned = before.map_or(0.0, |before| {
+                    let part = &self.system.beams()[*beam];
+                    let turns = turns[*beam].get_or_insert_with(|| turning::turns(part, before, q));
+                    turns[turning::nearest(part, view.s()[0])]
+                });
+                unfold(fields.angle(), from.map(|angle| angle + turned))
+            });
             series.samples.push(ProbeSample {
                 x: fields.position[0],
                 y: fields.position[1],
