@@ -51,7 +51,7 @@ fn numbers(four: Four) -> [c64; 4] {
 
 #[inline(always)]
 fn transpose(block: Block) -> Block {
-    let [re, im] = [0, 1].map(|part| Lanes::transpose(block.map(|row| row[part])));
+    let (re, im) = (Lanes::transpose(block.map(|row| row[0])), Lanes::transpose(block.map(|row| row[1])));
     std::array::from_fn(|r| [re[r], im[r]])
 }
 
