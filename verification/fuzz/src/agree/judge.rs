@@ -254,7 +254,8 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         // Round-off may change the choice of a step, and where an expression turns. Both runs then err by their own
         // steps, as two runs with different tolerances do.
         Some(_) if !same || settings::has_expression(scene) => (ALLOWED * wanted, f64::INFINITY),
-        Some(_) => (0.1 * wanted, FORCES.max(wanted)),
+        // Of as many steps one may still be another.
+        Some(_) => (wanted, FORCES.max(wanted)),
         None => (ALLOWED * wanted, FORCES.max(ALLOWED * wanted)),
     };
     let places = places + round_off(scene);
