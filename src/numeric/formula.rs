@@ -552,7 +552,7 @@ mod tests {
         assert_eq!(at("0*t", 1.0), [0.0, 0.0, 0.0]);
     }
 
-    /// Values belong to variables by their order, whether or not all of them take part.
+    /// The bound holds, and is not much larger than what one step after the other may add.
     #[test]
     fn round_off_is_bounded_and_not_by_much_more() {
         // Beside each formula the same without cancellation, and by how many units of the last digit of 1 it errs at most.
@@ -577,6 +577,7 @@ mod tests {
         }
     }
 
+    /// Values belong to variables by their order, whether or not all of them take part.
     #[test]
     fn several_variables() {
         let of = |text: &str| Formula::new(text, &["x", "y"]).expect("a formula");

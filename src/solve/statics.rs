@@ -236,8 +236,9 @@ fn loaded(
     }
 }
 
-/// Whether a path of load steps ends because nothing holds the structure but its loads, where it began from a state that was reached
-/// before, or there because nothing does but what strains a given shape, or because a beam has no stiffness along its axis yet.
+/// Whether a structure may be let come to rest where a path of load steps ends: one that only loads hold, where the path began from a
+/// state that was reached before; at the very beginning also one that begins in a given shape, which strains it a little, and a beam
+/// without stiffness along its axis yet.
 fn is_loose(system: &System, stuck: &NoStep) -> bool {
     let at_start = system.is_floppy() && system.starts_bent() || system.goes_slack();
     at_start && stuck.load < NEXT_TO_NOTHING || system.is_floppy() && system.is_taken_up()

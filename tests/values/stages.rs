@@ -682,6 +682,45 @@ fn what_holds_on_keeps_its_force_whatever_goes() {
     }
 }
 
+/// A string that hardly moves yet, held at its end, swings over to where its weight and the wind take it: along both, longer by half the
+/// weight over EA. No path of load steps leads there from the state in which a motion left it.
+#[test]
+fn a_string_comes_to_rest_from_the_state_of_a_motion() {
+    let (weight, flow, drag) = ([1.135_f64, -0.4463_f64], [0.1939, -0.09302], 0.07656);
+    let of = |more: &str| {
+        scene(&format!(
+            "beam.rope = {{ start = [0, 0], end = [1, 0], mass_per_length = 1, axial_stiffness = 1004, basis.ancf.nodes = 9 }}
+            support = [{{ beam = 'rope', at = 'end', fix = ['x', 'y'] }}]
+            probe = [{{ name = 'tip', beam = 'rope', at = 'start' }}]
+            effect.gravity.acceleration = {weight:?}
+            effect.drag = [{{ beam = 'rope', normal = {drag}, flow = {flow:?} }}]
+            {more}\n"
+        ))
+    };
+    let law = "1-cos(4.3689922480620154e1*t)/(1+(1.7054263565891475e1*t)^2)";
+    let motion = of(&format!(
+        "effect.distributed_force = [{{ beam = 'rope', value = [0, -0.6275], in_time.expression = '{law}' }}]
+        effect.actuation = [{{ beam = 'rope', strain.polynomial = [-0.0149292, -0.000142857, -0.001084941] }}]
+        analysis.dynamic.duration = 0.129"
+    ));
+    let before = motion.model().solve(motion.analysis()).expect("a motion").into_states();
+    let rest = of("analysis.static = {}");
+    let options = Options { start: before.saved.as_ref(), ..Options::default() };
+    let found = rest.model().solve_with(rest.analysis(), options).expect("an equilibrium");
+    let tip = found.states().probes[0].samples.last().expect("a sample");
+    let (mut load, mut along) = (weight, [0.0; 2]);
+    for _ in 0..50 {
+        let size = load[0].hypot(load[1]);
+        let [x, y] = load.map(|component| component / size);
+        let across = flow[1] * x - flow[0] * y;
+        let wind = drag * across.abs() * across;
+        along = [x, y].map(|component| component * (1.0 + 0.5 * size / 1004.0));
+        load = [weight[0] - wind * y, weight[1] + wind * x];
+    }
+    near(tip.x, 1.0 + along[0], 1e-7, "x");
+    near(tip.y, along[1], 1e-7, "y");
+}
+
 /// A tendon of given length on a beam that begins bent keeps its length in later stages: its tension is T (e²/EI + 1/EA) L = Δ, and it
 /// turns the end by T e L/EI.
 #[test]

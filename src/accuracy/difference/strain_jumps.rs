@@ -74,29 +74,26 @@ pub(in crate::accuracy) fn strain_jumps(
 
 /// Where within a beam the strain may jump, but for [`stiffness_jumps`].
 fn places(model: &Model, beam: usize, length: f64) -> Vec<f64> {
-    let of_beam =
-        model.points().filter(|at: &Place| at.beam == beam).map(|at| at.s).chain(model.breaks(beam));
-    let mut places = within(of_beam, length);
+    let mut places = within(points(model, beam).chain(model.breaks(beam)), length);
     let softer = stiffness_jumps(model, beam, length);
     places.retain(|s| softer.iter().all(|other| (s - other).abs() > SAME * length));
     places
 }
 
-/// Where within a beam the strain of a mode may jump. Nobody knows beforehand by how much, since modes have no size; of strings, and of
-/// beams that keep their length, it does not.
+/// Where within a beam the strain of a mode may jump, by nobody knows how much beforehand, since modes have no size. Beams that keep their
+/// length have no strain, and what a string errs by is told by its kinks.
 pub(in crate::accuracy) fn jumps_of_modes(model: &Model, beam: usize, length: f64) -> Vec<f64> {
     let Section { axial_stiffness, bending_stiffness, .. } = &model.beams[beam].section;
+    let softer = stiffness_jumps(model, beam, length);
     if axial_stiffness.is_none() || bending_stiffness.is_none() {
-        return stiffness_jumps(model, beam, length);
+        return softer;
     }
-    within(
-        model
-            .points()
-            .filter(|at| at.beam == beam)
-            .map(|at| at.s)
-            .chain(stiffness_jumps(model, beam, length)),
-        length,
-    )
+    within(points(model, beam).chain(softer), length)
+}
+
+/// The arc lengths at which parts, joints and supports act in a point of a beam.
+fn points(model: &Model, beam: usize) -> impl Iterator<Item = f64> {
+    model.points().filter(move |at: &Place| at.beam == beam).map(|at| at.s)
 }
 
 /// Where within a beam its stiffness against stretching, or its coupling, jumps. The strain that is a compromise there makes the

@@ -21,11 +21,11 @@ const MOST_SHORTER: f64 = 0.01;
 const SHORTEST: f64 = 2e-4;
 /// With half of their length errors that fall with the first order are told by half.
 const TOLD_BY_HALF: f64 = 2.0;
-
 /// Smallest and largest tolerance of a motion with contacts that tells what steps of a given length err by …
 const TOLERANCES: [f64; 2] = [1e-6, 1e-3];
 /// … and how many times as many iterations it may take.
 const MOST_ITERATIONS: usize = 10;
+
 /// Most records of which it is known where their forces pass corners of laws.
 const RECORDS: usize = 64;
 /// What acts this near to a node, in cells, acts there: the error is the cube of it.
