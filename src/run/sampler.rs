@@ -803,7 +803,7 @@ impl<'a> Sampler<'a> {
             }
             _ if self.system.is_fading() => {
                 "what held the state with which this analysis starts and has gone fades on the way, that of supports, joints, springs, \
-                 tendons and moments of another file as forces of fixed directions, which allow no large turns: let it go in a `[[stage]]` of one file, \
+                 tendons and everything of another file as forces of fixed directions and couples: let it go in a `[[stage]]` of one file, \
                  where loads and tendons fade as they are, or in a damped motion, which passes states that are unstable"
             }
             _ if self.system.is_floppy() => {

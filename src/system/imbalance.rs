@@ -3,9 +3,16 @@
 //! Where an analysis starts from a state that other supports, joints or effects have held, the
 //! forces of what has left and does not fade by itself, R₀ = f(q₀) + B₀ᵀ μ₀ − r₀, keep it where it is,
 //! where r₀ and μ₀ are what those supports and joints did that are still there. They act on as
-//! −(1 − λ) R₀, dead forces at the nodes, held ones included, that fade as the load factor grows: the
-//! path leads from that state to the equilibrium of what is there now, and reactions begin with what
-//! they were.
+//! −(1 − λ) R₀ at the nodes, held ones included, and fade as the load factor grows: the path leads from
+//! that state to the equilibrium of what is there now, and reactions begin with what they were.
+//!
+//! On the position of a node they are a force of fixed direction. On its gradient r' = |r'| t, with the
+//! normal n, they are a couple M and a part T along the beam, as supports, joints, springs and moments
+//! make them, whatever the angle by which the node turns:
+//!
+//! ```text
+//! F = T t + M n/|r'|,    T = R₀·t₀,    M = r₀' × R₀.
+//! ```
 
 use super::System;
 use crate::assembly::{
@@ -44,8 +51,46 @@ struct Imbalance {
     nodes: Vec<f64>,
     /// The coordinates of the beam.
     range: Range<usize>,
-    /// −R₀ on these.
-    force: Vec<f64>,
+    /// −R₀ on each of them.
+    forces: Vec<OnNode>,
+}
+
+/// Part of −R₀ on a node.
+#[derive(Clone, Copy)]
+struct OnNode {
+    /// The force on its position \[N\].
+    force: [f64; 2],
+    /// T \[N m\].
+    along: f64,
+    /// M \[N m\].
+    couple: f64,
+}
+
+impl OnNode {
+    /// The generalised forces `[fx, fy, gx, gy]` in the state \[x, y, x', y'\].
+    fn new([.., x, y]: [f64; 4], [fx, fy, gx, gy]: [f64; 4]) -> Self {
+        Self { force: [fx, fy], along: (gx * x + gy * y) / x.hypot(y), couple: x * gy - y * gx }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.force == [0.0; 2] && self.along == 0.0 && self.couple == 0.0
+    }
+
+    /// The generalised forces in another state.
+    fn in_state(&self, [.., x, y]: [f64; 4]) -> [f64; 4] {
+        let length = x.hypot(y);
+        let (t, n) = (self.along / length, self.couple / (length * length));
+        [self.force[0], self.force[1], t * x - n * y, t * y + n * x]
+    }
+
+    /// Their derivative with respect to the gradient, (T/|r'|) n nᵀ − (M/|r'|²)(t nᵀ + n tᵀ): the entries
+    /// xx, xy and yy.
+    fn derivative(&self, [.., x, y]: [f64; 4]) -> [f64; 3] {
+        let length = x.hypot(y);
+        let (c, s) = (x / length, y / length);
+        let (t, m) = (self.along / length, self.couple / (length * length));
+        [t * s * s + 2.0 * m * c * s, -t * c * s - m * (c * c - s * s), t * c * c - 2.0 * m * c * s]
+    }
 }
 
 impl Effect for Imbalance {
@@ -62,19 +107,24 @@ impl Effect for Imbalance {
     }
 
     fn is_constant(&self) -> bool {
-        true
+        self.forces.iter().all(|on| on.along == 0.0 && on.couple == 0.0)
     }
 
     fn is_conservative(&self) -> bool {
         false
     }
 
-    fn energy(&self, q: &[f64]) -> f64 {
-        self.force.iter().zip(&q[self.range.clone()]).map(|(f, q)| f * q).sum()
+    // A couple has a potential only with an angle that counts full turns: its work is accumulated.
+    fn energy(&self, _: &[f64]) -> f64 {
+        0.0
     }
 
-    fn add_force(&self, factor: f64, _: &[f64], f: &mut [f64]) {
-        f[self.range.clone()].iter_mut().zip(&self.force).for_each(|(f, force)| *f += factor * force);
+    fn add_force(&self, factor: f64, q: &[f64], f: &mut [f64]) {
+        let states = q[self.range.clone()].as_chunks::<4>().0;
+        let sums = f[self.range.clone()].as_chunks_mut::<4>().0;
+        for ((sum, z), on) in sums.iter_mut().zip(states).zip(&self.forces) {
+            sum.iter_mut().zip(on.in_state(*z)).for_each(|(sum, force)| *sum += factor * force);
+        }
     }
 
     fn add_force_and_tangent(
@@ -83,23 +133,37 @@ impl Effect for Imbalance {
         q: &[f64],
         _: Option<Earlier<'_>>,
         f: &mut [f64],
-        _: &mut Matrix,
+        k: &mut Matrix,
         _: &mut Workspace,
     ) {
         self.add_force(factor, q, f);
+        let states = q[self.range.clone()].as_chunks::<4>().0;
+        for ((node, z), on) in states.iter().enumerate().zip(&self.forces) {
+            let (x, [xx, xy, yy]) = (self.range.start + 4 * node + 2, on.derivative(*z));
+            let entries = [(x, x, xx), (x, x + 1, xy), (x + 1, x, xy), (x + 1, x + 1, yy)];
+            entries.into_iter().for_each(|(i, j, entry)| k.add_at(i, j, factor * entry));
+        }
     }
 
-    fn add_tangent_product(&self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
+    fn add_tangent_product(&self, factor: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
+        let [q, v] = [q, v].map(|vector| vector[self.range.clone()].as_chunks::<4>().0);
+        let sums = f[self.range.clone()].as_chunks_mut::<4>().0;
+        for (((sum, z), [.., x, y]), on) in sums.iter_mut().zip(q).zip(v).zip(&self.forces) {
+            let [xx, xy, yy] = on.derivative(*z);
+            sum[2] += factor * (xx * x + xy * y);
+            sum[3] += factor * (xy * x + yy * y);
+        }
+    }
 
     fn add_actions(&self, factor: f64, q: &[f64], _: &[f64], sum: &mut Actions) {
         let states = q[self.range.clone()].as_chunks::<4>().0;
-        for ((s, z), force) in self.nodes.iter().zip(states).zip(self.force.as_chunks::<4>().0) {
-            sum.add_point(*s, Action::of_node(*z, *force) * -factor);
+        for ((s, z), on) in self.nodes.iter().zip(states).zip(&self.forces) {
+            sum.add_point(*s, Action::of_node(*z, on.in_state(*z)) * -factor);
         }
     }
 
     fn size(&self) -> (usize, usize) {
-        (0, size_of_val(&self.force[..]))
+        (0, size_of_val(&self.forces[..]))
     }
 }
 
@@ -116,16 +180,18 @@ impl System {
 
     /// Begins with these scaled multipliers, and lets −`unbalanced` act on all nodes and fade.
     pub fn leave_unbalanced(&mut self, multipliers: &[f64], unbalanced: Option<&[f64]>) {
-        if let Some(start) = &mut self.start {
-            start.multipliers = multipliers.to_vec();
-        }
+        let Some(start) = &mut self.start else { return };
+        start.multipliers = multipliers.to_vec();
         let Some(unbalanced) = unbalanced else { return };
         for (beam, part) in self.beams.iter().enumerate() {
             let nodes = part.basis.nodes().to_vec();
             let range = 4 * part.first_node..4 * (part.first_node + nodes.len());
-            let force: Vec<f64> = unbalanced[range.clone()].iter().map(|force| -force).collect();
-            if force.iter().any(|force| *force != 0.0) {
-                let effect = Box::new(Imbalance { beam, nodes, range, force });
+            let states = start.q[range.clone()].as_chunks::<4>().0;
+            let on_nodes = unbalanced[range.clone()].as_chunks::<4>().0;
+            let of_node = |(z, force): (&[f64; 4], &[f64; 4])| OnNode::new(*z, force.map(|force| -force));
+            let forces: Vec<OnNode> = states.iter().zip(on_nodes).map(of_node).collect();
+            if !forces.iter().all(OnNode::is_zero) {
+                let effect = Box::new(Imbalance { beam, nodes, range, forces });
                 let amplitude = Acting::NoLonger { time: 0.0 }.amplitude(None);
                 self.terms.loads.push(ActingLoad { effect, amplitude });
             }

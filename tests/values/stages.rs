@@ -436,6 +436,46 @@ fn statics_goes_on_from_the_state_of_another_scene() {
     near(half.y, tip, 1e-8, "half-way");
 }
 
+/// A couple at the end bends a cantilever into 0.9 of a circle, by a moment of another file or by a support that
+/// turns the end. Where it has gone it fades as a couple, through any angle: the end is turned by M L/EI all the way.
+#[test]
+fn couples_of_what_has_gone_fade_through_large_turns() {
+    let of = |support: &str, effect: &str, analysis: &str| {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1, basis.ancf.elements = 32 }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}{support}]
+            probe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]
+            {effect}
+            {analysis}"
+        );
+        scene(&text)
+    };
+    let whole = 1.8 * PI;
+    let unloads = |found: &Results, of_what: &str| {
+        let states = found.states();
+        assert_eq!(states.parameter, [0.0, 0.25, 0.5, 0.75, 1.0]);
+        for (load, tip) in states.parameter.iter().zip(&states.probes[0].samples) {
+            let angle = whole * (1.0 - load);
+            let sinc = if angle == 0.0 { 1.0 } else { angle.sin() / angle };
+            near(tip.x, sinc, 2e-5, &format!("x at {load} of {of_what}"));
+            let height = if angle == 0.0 { 0.0 } else { (1.0 - angle.cos()) / angle };
+            near(tip.y, height, 2e-5, &format!("y at {load} of {of_what}"));
+        }
+    };
+    let moment = format!("effect.moment = [{{ beam = 'arm', at = 'end', value = {whole} }}]");
+    let (bent, free) = (of("", &moment, "analysis.static = {}"), of("", "", "analysis.static.steps = 4"));
+    let bent = bent.model().solve(bent.analysis()).expect("an equilibrium").into_states();
+    let options = Options { start: bent.saved.as_ref(), ..Options::default() };
+    unloads(&free.model().solve_with(free.analysis(), options).expect("an equilibrium"), "a moment");
+
+    let turned =
+        format!(", {{ beam = 'arm', at = 'end', fix = ['angle'], move.angle = {whole}, until = 'free' }}");
+    let stages = "stage = [{ name = 'turned', analysis.static.steps = 4 }, { name = 'free', analysis.static.steps = 4 }]";
+    let run = solve_stages(of(&turned, "", stages).stages(), Options::default());
+    assert!(run.failure.is_none());
+    unloads(&run.results[1], "a support");
+}
+
 /// Stages need nodes of all stages in each, a basis by name, and say in which of them something went
 /// wrong.
 #[test]
