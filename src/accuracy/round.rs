@@ -431,9 +431,18 @@ impl<'a, 'o> Runner<'a, 'o> {
         if !self.options.states {
             results.states_mut().states = None;
         }
-        let (beside, failed) = match self.beside_finer(&stations, &setting, &results, &corners) {
-            Ok(beside) => (beside, None),
-            Err(why) => (None, Some(why)),
+        let mut difference = match &coarse {
+            Ok(coarse) if coarse.run().complete => self.difference(coarse, &results),
+            Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
+            Err(error) => Err(format!("on half as many cells there is no result: {error}")),
+        };
+        let seen = difference.as_ref().ok();
+        let beside = match self.beside_finer(&stations, &setting, &results, &corners, seen) {
+            Ok(beside) => beside,
+            Err(why) => {
+                difference = Err(why);
+                None
+            }
         };
         let mut jumps = self.stiffness_jumps(beside.as_ref());
         let round_off = difference::round_off(&results);
@@ -442,12 +451,6 @@ impl<'a, 'o> Runner<'a, 'o> {
             (a, b) => a.or(b),
         };
         let mut unseen = both(beside, round_off);
-        let difference = match &coarse {
-            _ if let Some(why) = failed => Err(why),
-            Ok(coarse) if coarse.run().complete => self.difference(coarse, &results),
-            Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
-            Err(error) => Err(format!("on half as many cells there is no result: {error}")),
-        };
         let difference = difference.and_then(|difference| {
             let steps = self.beside_chosen_steps(&stations, &setting, &results, &difference)?;
             unseen = both(unseen.take(), steps);

@@ -198,6 +198,35 @@ fn strains_of_modes_jump_where_something_acts_within_a_span() {
     }
 }
 
+/// A hinged beam of unit length, stiffness and mass vibrates with angular frequencies k²π² and buckles under k²π². Of eight
+/// half waves few cells, or half as many, see so little that two meshes may happen to agree.
+#[test]
+fn waves_that_are_short_against_cells_are_seen() {
+    for (analysis, unit) in [("modal", TAU), ("buckling", 1.0)] {
+        for elements in 8..=13 {
+            let text = format!(
+                "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = 1, mass_per_length = 1, \
+                 basis.ancf.elements = {elements} }}
+                support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'arm', at = 'end', fix = ['y'] }}]
+                effect.force = [{{ beam = 'arm', at = 'end', value = [-1, 0] }}]
+                analysis.{analysis}.count = 8"
+            );
+            let text = if analysis == "modal" { text.replace("effect.force", "#") } else { text };
+            let scene = scene(&text);
+            let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
+                .expect("results");
+            let told = &error(&results).eigenvalues;
+            for ((k, found), told) in (1..=8).zip(results.eigenvalues()).zip(told.iter().copied()) {
+                let truth = (found * unit / (f64::from(k) * PI).powi(2) - 1.0).abs();
+                assert!(
+                    truth <= 1.5 * told && told <= 20.0 * truth,
+                    "{analysis} {k}, {elements} elements: {truth:.1e}, told {told:.1e}"
+                );
+            }
+        }
+    }
+}
+
 /// A support within a span takes a force along the beam, so that the strain jumps there.
 #[test]
 fn the_strain_jumps_at_a_support_within_a_span() {

@@ -19,6 +19,9 @@ const MOST_SHORTER: f64 = 0.01;
 /// … and how short they may be, in beam lengths: the round-off of positions makes forces that grow as the third power of what
 /// follows from it.
 const SHORTEST: f64 = 2e-4;
+/// Two meshes whose frequencies or critical loads differ by more than this part are too coarse for these waves to tell errors by
+/// themselves.
+const TOO_COARSE_FOR_WAVES: f64 = 1e-3;
 /// With half of their length errors that fall with the first order are told by half.
 const TOLD_BY_HALF: f64 = 2.0;
 /// Smallest and largest tolerance of a motion with contacts that tells what steps of a given length err by …
@@ -53,23 +56,26 @@ impl Runner<'_, '_> {
     }
 
     /// What the results of a `setting` differ by from those with four cells in every part of a beam that has one, with nodes where
-    /// something acts in a point or forces pass corners of laws, with short cells where a stiffness jumps, and with elements in
-    /// place of shape functions whose errors finer meshes do not remove, or whose errors coarser ones do not tell; `None` where
-    /// there is nothing of it.
+    /// something acts in a point or forces pass corners of laws, with short cells where a stiffness jumps, with elements in
+    /// place of shape functions whose errors finer meshes do not remove, or whose errors coarser ones do not tell, and with halves of
+    /// cells of a scene that are long against the waves, as what was `seen` of these shows; `None` where there is nothing of it.
     pub(super) fn beside_finer(
         &mut self,
         stations: &[Vec<f64>],
         setting: &Setting,
         results: &Results,
         corners: &[Place],
+        seen: Option<&Difference>,
     ) -> Result<Option<Difference>, String> {
         let corners = self.within_cells(corners);
+        let too_coarse =
+            seen.is_some_and(|seen| seen.eigenvalues.iter().any(|error| *error > TOO_COARSE_FOR_WAVES));
         // What acts in a point within a cell makes an error by its place in the cell, which is another one in coarser cells.
         let beams = 0..self.model.beams.len();
         // Where a stiffness jumps, errors of the first order are beside others that fall so fast that coarser meshes show these only.
         let is_unseen = |beam: &usize| {
             let acts = self.pointed[*beam] || !self.softer[*beam].is_empty() || !corners[*beam].is_empty();
-            self.is_unseen(*beam) || acts
+            self.is_unseen(*beam) || acts || too_coarse && self.named[*beam].is_some()
         };
         let unseen: Vec<usize> = beams.filter(is_unseen).collect();
         if unseen.is_empty() || !results.run().complete {
@@ -88,7 +94,11 @@ impl Runner<'_, '_> {
                     // Meshfree shape functions reach over corners. Elements have to be shorter to err by less than those do.
                     let meshfree = matches!(beam.discretization, Discretization::Rpim { .. });
                     let dissimilar = self.dissimilar[index] || meshfree && !corners[index].is_empty();
-                    let named = if dissimilar { named.halved().halved() } else { named.clone() };
+                    let named = match () {
+                        () if dissimilar => named.halved().halved(),
+                        () if too_coarse => named.halved(),
+                        () => named.clone(),
+                    };
                     let mesh = named.quartered_parts().graded_towards(&self.softer[index]);
                     let nodes = mesh.and(&corners[index]).places();
                     match self.saturated[index] || dissimilar {
