@@ -1,5 +1,7 @@
 //! Laws of time: the factor of a load, or the motion of a support, as a function of time.
 
+mod changes;
+
 use crate::numeric::{End, Formula, GAUSS_6, rates};
 use std::f64::consts::PI;
 
@@ -77,6 +79,10 @@ impl Expression {
         let first = value.derivative(0)?;
         let second = first.derivative(0)?;
         Ok(Self { terms: [value, first, second], kinks })
+    }
+
+    fn value(&self, t: f64) -> f64 {
+        if self.kinks.is_empty() { self.terms[0].at(&[t]) } else { self.at(t)[0] }
     }
 
     /// The value and its first two derivatives at `t`. At a kink a formula may have none, so that
@@ -170,14 +176,10 @@ const MOST_PARTS: f64 = 1e6;
 const BESIDE: f64 = 1e-9;
 /// Time \[s\] of the earliest kinks whose distance is relative to it.
 const EARLIEST: f64 = 1e-6;
-/// Points at which an expression is evaluated to find out where it changes.
-const SAMPLES: u32 = 1 << 14;
 /// Smooth changes that take less than so many steps are divided …
 const SHORT_CHANGE: f64 = 4.0;
 /// … into so many.
 const PARTS_OF_CHANGE: u32 = 8;
-/// Parts of equal change into which an expression is divided.
-const TURNS: u32 = 64;
 
 /// `times`, rising, each once.
 fn merged(times: impl Iterator<Item = f64>) -> Vec<f64> {
@@ -285,40 +287,12 @@ impl Law {
         }
     }
 
-    /// Times between `start` and `end`, rising, that divide the changes of an expression evenly, by
-    /// the square roots of what it changes between points of evaluation: so the feet of a pulse
-    /// count too. Between these points nobody knows how an expression behaves, and a long step
-    /// would pass over a short pulse; changes within less than 1/16384 of the time may be missed.
-    /// Other laws have none: their kinks say enough.
-    pub fn turns(&self, [start, end]: [f64; 2]) -> Vec<f64> {
+    /// Times between `start` and `end`, rising, that divide the changes of an expression evenly. Other laws have none: their
+    /// kinks say enough.
+    pub fn turns(&self, span: [f64; 2]) -> Vec<f64> {
         match self {
-            Self::Expression(_) => {
-                let time = |i: u32| start + f64::from(i) / f64::from(SAMPLES) * (end - start);
-                let values: Vec<f64> = (0..=SAMPLES).map(|i| self.at(time(i))[0]).collect();
-                let differences = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-                if !differences().sum::<f64>().is_normal() {
-                    return Vec::new();
-                }
-                let changes = || differences().map(f64::sqrt);
-                let share = changes().sum::<f64>() / f64::from(TURNS);
-                let (mut passed, mut next, mut turns) = (0.0, share, Vec::new());
-                for (i, change) in (0..).zip(changes()) {
-                    passed += change;
-                    if passed >= next {
-                        turns.push(time(i));
-                        next = (passed / share).floor().mul_add(share, share);
-                    }
-                    if change >= share {
-                        turns.push(time(i + 1));
-                    }
-                }
-                turns.retain(|time| *time > start);
-                turns.dedup();
-                turns
-            }
-            Self::Sum(laws) | Self::Product(laws) => {
-                merged(laws.iter().flat_map(|law| law.turns([start, end])))
-            }
+            Self::Expression(expression) => expression.turns(span),
+            Self::Sum(laws) | Self::Product(laws) => merged(laws.iter().flat_map(|law| law.turns(span))),
             _ => Vec::new(),
         }
     }

@@ -10,6 +10,8 @@ use crate::results::Errors;
 /// By how much the error falls from the coarse run to the finer one at most: of equilibria and
 /// modes …
 const CONTRACTION: f64 = 15.0;
+/// … of critical loads, of which cells under tension and under compression err by opposite signs …
+const CONTRACTION_OF_BUCKLING: f64 = 8.0;
 /// … of motions …
 const CONTRACTION_OF_MOTION: f64 = 10.0;
 /// … of beams with contacts, which begin and end within cells …
@@ -214,6 +216,7 @@ impl Runner<'_, '_> {
         let result = match self.analysis {
             _ if second => CONTRACTION_OF_SECOND_ORDER,
             Analysis::Dynamic(_) => CONTRACTION_OF_MOTION,
+            Analysis::Buckling(_) => CONTRACTION_OF_BUCKLING,
             _ => CONTRACTION,
         };
         let result = if self.model.has_contact() { result.min(CONTRACTION_OF_CONTACT) } else { result };

@@ -9,7 +9,10 @@
 //! of a sum of 24 terms overflows a stack of 2 MiB, which ends the process, and that of eight factors
 //! takes 18 ms to find.
 
-use std::f64::consts::{E, LOG2_E, LOG10_E, PI, TAU};
+mod range;
+
+use range::Course;
+use std::f64::consts::{E, FRAC_PI_2, LOG2_E, LOG10_E, PI, TAU};
 use std::fmt;
 use std::sync::Arc;
 
@@ -30,60 +33,81 @@ pub struct Formula {
 enum Step {
     Number(f64),
     Variable(usize),
-    Call(Function),
+    Call(&'static Function),
     Operator(char),
 }
 
-/// Value, first and second derivative of a function of one number.
-type Function = fn(f64) -> [f64; 3];
+/// A function of one number.
+#[derive(Debug)]
+struct Function {
+    name: &'static str,
+    /// Its value, and its first and second derivative.
+    at: fn(f64) -> [f64; 3],
+    course: Course,
+}
+
+/// Numbers of any size.
+const ALL: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+const fn rising(name: &'static str, [from, to]: [f64; 2], at: fn(f64) -> [f64; 3]) -> Function {
+    Function { name, at, course: Course::Rising(from, to) }
+}
 
 /// Functions that may be used: all are smooth where they are defined.
-const FUNCTIONS: [(&str, Function); 17] = [
-    ("sin", |x| [x.sin(), x.cos(), -x.sin()]),
-    ("cos", |x| [x.cos(), -x.sin(), -x.cos()]),
-    ("tan", |x| {
-        let (value, slope) = (x.tan(), 1.0 / (x.cos() * x.cos()));
-        [value, slope, 2.0 * value * slope]
-    }),
-    ("asin", |x| {
+static FUNCTIONS: [Function; 17] = [
+    Function { name: "sin", course: Course::Wave(FRAC_PI_2), at: |x| [x.sin(), x.cos(), -x.sin()] },
+    Function { name: "cos", course: Course::Wave(0.0), at: |x| [x.cos(), -x.sin(), -x.cos()] },
+    Function {
+        name: "tan",
+        course: Course::Tangent,
+        at: |x| {
+            let (value, slope) = (x.tan(), 1.0 / (x.cos() * x.cos()));
+            [value, slope, 2.0 * value * slope]
+        },
+    },
+    rising("asin", [-1.0, 1.0], |x| {
         let square = 1.0 - x * x;
         [x.asin(), 1.0 / square.sqrt(), x / (square * square.sqrt())]
     }),
-    ("acos", |x| {
-        let square = 1.0 - x * x;
-        [x.acos(), -1.0 / square.sqrt(), -x / (square * square.sqrt())]
-    }),
-    ("atan", |x| {
+    Function {
+        name: "acos",
+        course: Course::Falling(-1.0, 1.0),
+        at: |x| {
+            let square = 1.0 - x * x;
+            [x.acos(), -1.0 / square.sqrt(), -x / (square * square.sqrt())]
+        },
+    },
+    rising("atan", ALL, |x| {
         let slope = 1.0 / (1.0 + x * x);
         [x.atan(), slope, -2.0 * x * slope * slope]
     }),
-    ("sinh", |x| [x.sinh(), x.cosh(), x.sinh()]),
-    ("cosh", |x| [x.cosh(), x.sinh(), x.cosh()]),
-    ("tanh", |x| {
+    rising("sinh", ALL, |x| [x.sinh(), x.cosh(), x.sinh()]),
+    Function { name: "cosh", course: Course::Valley, at: |x| [x.cosh(), x.sinh(), x.cosh()] },
+    rising("tanh", ALL, |x| {
         let (value, inverse) = (x.tanh(), 1.0 / x.cosh());
         let slope = inverse * inverse;
         [value, slope, -2.0 * value * slope]
     }),
-    ("asinh", |x| {
+    rising("asinh", ALL, |x| {
         let square = 1.0 + x * x;
         [x.asinh(), 1.0 / square.sqrt(), -x / (square * square.sqrt())]
     }),
-    ("acosh", |x| {
+    rising("acosh", [1.0, f64::INFINITY], |x| {
         let square = x * x - 1.0;
         [x.acosh(), 1.0 / square.sqrt(), -x / (square * square.sqrt())]
     }),
-    ("atanh", |x| {
+    rising("atanh", [-1.0, 1.0], |x| {
         let slope = 1.0 / (1.0 - x * x);
         [x.atanh(), slope, 2.0 * x * slope * slope]
     }),
-    ("exp", |x| [x.exp(); 3]),
-    ("sqrt", |x| {
+    rising("exp", ALL, |x| [x.exp(); 3]),
+    rising("sqrt", [0.0, f64::INFINITY], |x| {
         let root = x.sqrt();
         [root, 0.5 / root, -0.25 / (x * root)]
     }),
-    ("ln", |x| [x.ln(), 1.0 / x, -1.0 / (x * x)]),
-    ("log2", |x| [x.log2(), LOG2_E / x, -LOG2_E / (x * x)]),
-    ("log10", |x| [x.log10(), LOG10_E / x, -LOG10_E / (x * x)]),
+    rising("ln", [0.0, f64::INFINITY], |x| [x.ln(), 1.0 / x, -1.0 / (x * x)]),
+    rising("log2", [0.0, f64::INFINITY], |x| [x.log2(), LOG2_E / x, -LOG2_E / (x * x)]),
+    rising("log10", [0.0, f64::INFINITY], |x| [x.log10(), LOG10_E / x, -LOG10_E / (x * x)]),
 ];
 
 /// Constants.
@@ -157,7 +181,7 @@ impl Formula {
                 Step::Variable(variable) => (values[variable], 0.0),
                 Step::Call(function) => {
                     let [x, error] = stack.pop().unwrap_or_default();
-                    let [value, slope, _] = function(x);
+                    let [value, slope, _] = (function.at)(x);
                     (value, (slope * error).abs())
                 }
                 Step::Operator(operator) => {
@@ -196,7 +220,7 @@ impl Formula {
                     top += 1;
                 }
                 Step::Call(function) => {
-                    stack[top - 1] = stack[top - 1].through(function(stack[top - 1].value))
+                    stack[top - 1] = stack[top - 1].through((function.at)(stack[top - 1].value))
                 }
                 Step::Operator(operator) => {
                     top -= 1;
@@ -323,7 +347,7 @@ enum Before {
 enum Waiting {
     Operator(char),
     Bracket,
-    Function(Function),
+    Function(&'static Function),
 }
 
 /// How tightly an operator binds.
@@ -380,7 +404,7 @@ fn read(text: &str, variables: &[&str]) -> Result<Vec<Step>, String> {
             }
             let variable = variables.iter().position(|name| *name == word);
             let constant = CONSTANTS.iter().find(|(name, _)| *name == word);
-            let function = FUNCTIONS.iter().find(|(name, _)| *name == word);
+            let function = FUNCTIONS.iter().find(|function| function.name == word);
             before = match (variable, constant, function) {
                 (Some(variable), ..) => {
                     steps.push(Step::Variable(variable));
@@ -390,8 +414,8 @@ fn read(text: &str, variables: &[&str]) -> Result<Vec<Step>, String> {
                     steps.push(Step::Number(*value));
                     Before::Value
                 }
-                (None, None, Some((_, function))) => {
-                    waiting.push(Waiting::Function(*function));
+                (None, None, Some(function)) => {
+                    waiting.push(Waiting::Function(function));
                     Before::Function
                 }
                 (None, None, None) => return Err(unknown(word, variables)),
@@ -486,7 +510,7 @@ fn unknown(word: &str, variables: &[&str]) -> String {
         "abs" | "min" | "max" | "floor" | "ceil" | "round" | "sign" | "signum" | "mod" => {
             "what has corners is a `table`, a `ramp` or a `step`, which `sum` and `product` combine with others".to_owned()
         }
-        _ => format!("it knows {}, pi, tau, e, and {}", variables.join(", "), FUNCTIONS.map(|(name, _)| name).join(", ")),
+        _ => format!("it knows {}, pi, tau, e, and {}", variables.join(", "), FUNCTIONS.each_ref().map(|function| function.name).join(", ")),
     };
     format!("it cannot contain `{word}`: {advice}")
 }
