@@ -79,11 +79,12 @@
 //! Changes of loads and supports between the stages, which the stages do not see
 //! ([`crate::system::laws`]), are added to the error through the same matrix. The mean and first
 //! moment of the unseen loads are also applied to the end of the step, because a load that is
-//! sampled always in the same phase would push the same way in every step.
+//! sampled always in the same phase would push the same way in every step; so they are in the parts of
+//! a step of fixed length that loads divide.
 
 use super::State;
 use super::memory::{CollocationMemory, Memory, TangentMemory};
-use super::method::{Allowed, Method};
+use super::method::{Allowed, Method, may_not_see_loads};
 use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::stages::{self, Mixture, Stages};
 use super::tableau::{Block, Tableau};
@@ -91,6 +92,7 @@ use super::turns::Turns;
 use crate::lanes::Lanes;
 use crate::linear::complex::ComplexFactor;
 use crate::linear::{Factor, NOT_FACTORISED, Singular};
+use crate::model::StepControl;
 use crate::solve::Statistics;
 use crate::solve::equilibrium::larger;
 use crate::solve::newton::{Failure, Iterations};
@@ -162,6 +164,7 @@ enum BlockFactor {
 pub struct Collocation<'a> {
     motion: Motion<'a>,
     tableau: Tableau,
+    control: StepControl,
     /// Q̈_i of the last accepted step, its multipliers, and its length.
     accelerations: Vec<Lanes>,
     multipliers: Vec<Lanes>,
@@ -184,7 +187,7 @@ pub struct Collocation<'a> {
 
 impl<'a> Collocation<'a> {
     /// The method of a tableau.
-    pub fn new(motion: Motion<'a>, tableau: Tableau) -> Self {
+    pub fn new(motion: Motion<'a>, tableau: Tableau, control: StepControl) -> Self {
         let (n, unknowns, s) = (motion.coordinates(), motion.unknowns(), tableau.stages());
         Self {
             accelerations: vec![Lanes::ZERO; n],
@@ -202,6 +205,7 @@ impl<'a> Collocation<'a> {
             stages: motion.stages(),
             motion,
             tableau,
+            control,
         }
     }
 
@@ -483,11 +487,16 @@ impl<'a> Collocation<'a> {
     /// (ζ²/h² M + K)⁻¹ e in the state `state`, from the supports' frames into fixed axes; returns
     /// |ζ|².
     fn filter(&mut self, state: &State, e: &mut [f64]) -> f64 {
-        let FactoredTangent { at, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
-        self.turns.measure(&at.q, &state.q);
+        self.turn_to(state);
         self.solve_turned(Complex::new(1.0, 0.0), e);
         self.motion.from_frames(e);
         self.eigenvalue().norm_sqr()
+    }
+
+    /// Takes the turns of the nodes from where the tangent was taken to the state `state`.
+    fn turn_to(&mut self, state: &State) {
+        let FactoredTangent { at, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
+        self.turns.measure(&at.q, &state.q);
     }
 
     /// e − F e in the supports' frames: the part of e that is slow compared with a step of length
@@ -574,9 +583,11 @@ impl<'a> Collocation<'a> {
         for (mut force, (unknowns, unit)) in
             moments.into_iter().zip([(&mut to.v, h.recip()), (&mut to.q, 1.0)])
         {
-            let square = self.filter(from, &mut force);
-            error = error.max(square * self.motion.distance(&force));
-            unknowns.iter_mut().zip(&force).for_each(|(x, e)| *x -= square * unit * e);
+            self.turn_to(from);
+            self.solve_turned(self.eigenvalue().powi(2), &mut force);
+            self.motion.from_frames(&mut force);
+            error = error.max(self.motion.distance(&force));
+            unknowns.iter_mut().zip(&force).for_each(|(x, e)| *x -= unit * e);
         }
         error
     }
@@ -669,10 +680,10 @@ impl Method for Collocation<'_> {
         }
         to.time = self.end;
         let mut unseen = 0.0;
-        if allowed.is_some() {
-            if !self.tableau.damps() {
-                unseen += self.damp(from, to);
-            }
+        if allowed.is_some() && !self.tableau.damps() {
+            unseen += self.damp(from, to);
+        }
+        if may_not_see_loads(self.control, h) {
             unseen += self.make_up(state, from, to);
         }
         self.motion.carry(to);

@@ -16,7 +16,7 @@
 //! − 1/6) in a step. With h q⃛ ≈ q̈₁ − q̈₀ this estimate costs nothing. The factor (K + cM)⁻¹ cM
 //! removes vibrations too fast for the step, which it would not follow anyway. Changes of loads and
 //! supports between the ends of the step ([`crate::system::laws`]) are added to the estimate, and
-//! corrected for, through the same matrix.
+//! corrected for, through the same matrix; also in the parts of a step of fixed length that loads divide.
 //!
 //! Where a contact begins, ends, or turns, and where a much longer step follows a kink of loads or supports, a is set
 //! to the q̈ of the equations of motion. Otherwise it would carry the earlier force into the next steps: a hinged beam on
@@ -33,12 +33,13 @@
 
 use super::State;
 use super::memory::{GeneralizedAlphaMemory, Memory, TangentMemory};
-use super::method::{Allowed, Method};
+use super::method::{Allowed, Method, may_not_see_loads};
 use super::motion::{Acceleration, Motion, Rates, StageState};
 use super::turns::Turns;
 use crate::assembly::Earlier;
 use crate::lanes::Lanes;
 use crate::linear::{Factor, NOT_FACTORISED, Singular};
+use crate::model::StepControl;
 use crate::solve::Statistics;
 use crate::solve::newton::{self, Equations, Failure, Iterations, Settings};
 use crate::threads;
@@ -123,6 +124,7 @@ pub struct GeneralizedAlpha<'a> {
     motion: Motion<'a>,
     coefficients: Coefficients,
     newton_tolerance: f64,
+    control: StepControl,
     last: Accelerations,
     trial: Accelerations,
     /// a of the step before the last, and the last step: from them the next a is extrapolated.
@@ -165,7 +167,7 @@ impl FactoredTangent {
 impl<'a> GeneralizedAlpha<'a> {
     /// The method with spectral radius `rho`; the iteration of a step of fixed length may leave an
     /// error of `newton_tolerance` beam lengths.
-    pub fn new(motion: Motion<'a>, rho: f64, newton_tolerance: f64) -> Self {
+    pub fn new(motion: Motion<'a>, rho: f64, newton_tolerance: f64, control: StepControl) -> Self {
         let (n, unknowns) = (motion.coordinates(), motion.unknowns());
         let last = Accelerations {
             physical: vec![0.0; n],
@@ -177,6 +179,7 @@ impl<'a> GeneralizedAlpha<'a> {
             motion,
             coefficients: Coefficients::new(rho),
             newton_tolerance,
+            control,
             trial: last.clone(),
             last,
             before: None,
@@ -487,7 +490,7 @@ impl Method for GeneralizedAlpha<'_> {
         self.motion.release(physical);
         self.trial.multipliers.copy_from_slice(&self.x[n..]);
         to.time = end;
-        let unseen = if allowed.is_some() { self.make_up(state, to, c) } else { 0.0 };
+        let unseen = if may_not_see_loads(self.control, h) { self.make_up(state, to, c) } else { 0.0 };
         self.motion.carry(to);
         self.motion.project(to)?;
         Ok(if allowed.is_some() { self.error(h, c) + unseen } else { 0.0 })

@@ -164,13 +164,17 @@ pub fn solve(
 }
 
 fn method<'a>(system: &'a System, integrator: Integrator) -> Result<Box<dyn Method + 'a>, Singular> {
-    let motion = Motion::new(system)?;
+    let (motion, control) = (Motion::new(system)?, integrator.step_control());
     Ok(match integrator {
         Integrator::GeneralizedAlpha { spectral_radius, newton_tolerance, .. } => {
-            Box::new(GeneralizedAlpha::new(motion, spectral_radius, newton_tolerance))
+            Box::new(GeneralizedAlpha::new(motion, spectral_radius, newton_tolerance, control))
         }
-        Integrator::Gauss { stages, .. } => Box::new(Collocation::new(motion, Tableau::gauss(stages))),
-        Integrator::Radau { stages, .. } => Box::new(Collocation::new(motion, Tableau::radau(stages))),
+        Integrator::Gauss { stages, .. } => {
+            Box::new(Collocation::new(motion, Tableau::gauss(stages), control))
+        }
+        Integrator::Radau { stages, .. } => {
+            Box::new(Collocation::new(motion, Tableau::radau(stages), control))
+        }
     })
 }
 

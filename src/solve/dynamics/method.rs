@@ -4,6 +4,7 @@ use super::State;
 use super::memory::Memory;
 use super::motion::StageState;
 use crate::linear::Singular;
+use crate::model::StepControl;
 use crate::solve::Statistics;
 use crate::solve::newton::{Failure, Iterations};
 
@@ -14,6 +15,19 @@ pub struct Allowed {
     pub step: f64,
     /// Of the positions, because its equations are solved by an iteration that stops.
     pub iteration: f64,
+}
+
+/// Part by which a step is shorter than the one that was given and is still that step.
+const WHOLE: f64 = 1e-6;
+
+/// Whether a step of the length `h` \[s\] is held against what loads do between the places where the method looks at them: where
+/// steps are chosen, and in the parts of a given one that loads divide. A whole step of a given length is the method as it is
+/// published.
+pub fn may_not_see_loads(control: StepControl, h: f64) -> bool {
+    match control {
+        StepControl::Fixed(step) => h < (1.0 - WHOLE) * step,
+        StepControl::Tolerance(_) => true,
+    }
 }
 
 /// A method of time integration, with the quantities that it carries from step to step
