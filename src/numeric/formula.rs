@@ -445,7 +445,7 @@ fn read(text: &str, variables: &[&str]) -> Result<Vec<Step>, String> {
                 settle(&mut waiting, &mut steps, 0);
                 waiting.pop();
                 if let Some(Waiting::Function(function)) = waiting.last() {
-                    steps.push(Step::Call(*function));
+                    steps.push(Step::Call(function));
                     waiting.pop();
                 }
                 before = Before::Value;
