@@ -22,7 +22,7 @@ const OF_CURVATURE: f64 = 2.0;
 const JUMP: f64 = 1e-6;
 
 /// The parts of the largest errors of positions and of angles on its beam that those of a probe are at least.
-const LEAST: (f64, f64) = (0.1, 0.04);
+const LEAST: (f64, f64) = (0.2, 0.1);
 
 /// Velocities and angles of so many records before and after tell of their errors, too.
 const NEAR_RECORDS: usize = 2;
@@ -255,7 +255,7 @@ fn sample(shape: &Shape, k: usize) -> Option<ProbeSample> {
 
 /// What a probe at `s` differs by, and no less than what is on both sides of it. Errors are waves along a beam:
 /// a probe that lies where one passes zero tells nothing.
-/// The direction of a string is as rough as the curvature of a beam: it errs by what it does on either side.
+/// Directions err by waves within each cell, which have another phase in other cells: by what they do on either side.
 fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, beam: &Beam) -> ProbeSample {
     let differ_at = |k: usize| Some(differ(&sample(coarse, k)?, &sample(fine, k)?));
     let after = fine.s.partition_point(|place| *place < s);
@@ -266,17 +266,12 @@ fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, beam: 
     let meshfree = matches!(beam.discretization, Discretization::Rpim { .. });
     let at_end = meshfree && fine.s.last().is_some_and(|end| *end <= s);
     let strain = if at_end { before.strain } else { before.strain.min(after.strain) };
-    let angles = [before.angle, after.angle].map(within_half_a_turn);
-    let angle = if beam.section.bending_stiffness.is_some() {
-        angles[0].min(angles[1])
-    } else {
-        angles[0].max(angles[1])
-    };
+    let [left, right] = [before.angle, after.angle].map(within_half_a_turn);
     let distance = larger(seen.x, before.x.min(after.x));
     ProbeSample {
         x: distance,
         y: distance,
-        angle: larger(seen.angle, angle),
+        angle: larger(seen.angle, left.max(right)),
         curvature: larger(seen.curvature, before.curvature.min(after.curvature)),
         strain: larger(seen.strain, strain),
         ..seen
