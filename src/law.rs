@@ -515,7 +515,8 @@ mod tests {
     fn an_expression_turns_where_its_value_changes() {
         let pulse = written("exp(-((t-3.37)/1e-3)^2)", vec![]);
         let turns = pulse.turns([0.0, 10.0]);
-        assert!(turns.len() >= 4 && turns.iter().all(|t| (t - 3.37).abs() < 1e-2), "{turns:?}");
+        let near = turns.iter().filter(|t| (**t - 3.37).abs() < 1e-2).count();
+        assert!(near >= 32 && turns.len() < near + 16, "{turns:?}");
         let even = written("3 - 2*t", vec![]).turns([1.0, 2.0]);
         let expected = (1..=64).map(|k| 1.0 + f64::from(k) / 64.0);
         assert!(even.len() == 64 && even.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4), "{even:?}");

@@ -130,7 +130,8 @@ impl Expression {
             shortest = shortest.min(next);
         }
         kept.extend(more.last());
-        kept
+        let ends = [samples.first(), samples.last()].map(|sample| sample.map_or(0.0, |sample| sample[0]));
+        graded(&kept, ends)
     }
 
     fn stretch(&self, ends: [Sample; 2]) -> Stretch {
@@ -139,6 +140,22 @@ impl Expression {
         let unknown = (b - a).abs().max(high - a.max(b)).max(a.min(b) - low);
         Stretch { ends, unknown }
     }
+}
+
+/// `times`, rising, with more around those that lie close together, so that no distance is much longer than the next one: beside
+/// what changes suddenly there is something of it that is small, and as short.
+fn graded(times: &[f64], [start, end]: [f64; 2]) -> Vec<f64> {
+    let mut all = times.to_vec();
+    for (i, pair) in times.windows(2).enumerate() {
+        let length = pair[1] - pair[0];
+        let before = i.checked_sub(1).map_or(start, |before| times[before]);
+        let after = times.get(i + 2).copied().unwrap_or(end);
+        let lengths = || std::iter::successors(Some(UNEVEN * length), |length| Some(UNEVEN * length));
+        all.extend(lengths().map(|l| pair[0] - l).take_while(|time| *time > before));
+        all.extend(lengths().map(|l| pair[1] + l).take_while(|time| *time < after));
+    }
+    all.sort_by(f64::total_cmp);
+    all
 }
 
 #[cfg(test)]
