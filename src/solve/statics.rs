@@ -321,7 +321,10 @@ fn along_load(
             Err(stuck) => break Err(stuck),
         };
         if !work.keep_step(&mut path) {
-            continue;
+            if observe(path.last().load, path.next_step(), &path.equilibrium.statistics) {
+                continue;
+            }
+            break Ok(());
         }
         notice(&mut path, &mut known, &mut solution.events);
         let at_end = point.load >= end;

@@ -19,6 +19,8 @@ const JUMP: f64 = 0.9;
 /// A step in which the work may err by more than this is taken back, relative to the work on rigid
 /// beams.
 const DOUBTFUL: f64 = 1e-4;
+/// How often in succession steps are taken back at most: one beside a kink or a bifurcation may be as long as before.
+const TAKEN_BACK: usize = 8;
 
 /// Work so far, with its estimated error.
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,6 +33,8 @@ pub struct Work {
     pub size: f64,
     /// dP/dλ in the last step that was integrated by the trapezoidal rule.
     slope: Option<f64>,
+    /// Steps that were taken back since one was kept.
+    taken_back: usize,
 }
 
 /// P in a state of the path.
@@ -54,10 +58,11 @@ impl Work {
         let before = *self;
         self.add_step(path);
         let doubtful = self.error - before.error > DOUBTFUL * (self.size - before.size);
-        if doubtful && path.take_back() {
-            *self = before;
+        if doubtful && self.taken_back < TAKEN_BACK && path.take_back() {
+            *self = Self { taken_back: before.taken_back + 1, ..before };
             return false;
         }
+        self.taken_back = 0;
         true
     }
 
