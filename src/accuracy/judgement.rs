@@ -297,6 +297,9 @@ mod tests {
         assert_eq!(of(still, f64::INFINITY), [15.0, 2.0]);
         assert_eq!(of(still, f64::NAN), [15.0, 2.0]);
         assert_eq!([8.0, 1.0].map(|seen| of(still, seen)[0]), [6.0, 1.5]);
+        let pressed =
+            "effect.force = [{ beam = 'arm', at = 'end', value = [-1, 0] }]\nanalysis.buckling.count = 2";
+        assert_eq!([pressed, "analysis.modal.count = 2"].map(|more| of(more, f64::INFINITY)[0]), [8.0, 15.0]);
         let motion = |integrator: &str| {
             of(&format!("analysis.dynamic = {{ duration = 1{integrator} }}"), f64::INFINITY)[0]
         };

@@ -63,7 +63,7 @@ impl Expression {
         let sample = |time: f64| [time, self.value(time)];
         let time = |i: u32| start + f64::from(i) / f64::from(SAMPLES) * (end - start);
         let samples: Vec<Sample> = (0..=SAMPLES).map(|i| sample(time(i))).collect();
-        let mut turns = self.sudden_changes(&samples);
+        let mut turns = self.sudden_changes(&samples, [start, end]);
         let differences = || samples.windows(2).map(|pair| (pair[1][1] - pair[0][1]).abs());
         if differences().sum::<f64>().is_normal() {
             let changes = || differences().map(f64::sqrt);
@@ -86,9 +86,9 @@ impl Expression {
         turns
     }
 
-    /// Times between these samples, evenly spread, at which steps should end because the value changes by much from one to the
+    /// Times of a `span` at which steps should end because the value changes by much from one of these `samples`, evenly spread, to the
     /// next, or may beyond them.
-    fn sudden_changes(&self, samples: &[Sample]) -> Vec<f64> {
+    fn sudden_changes(&self, samples: &[Sample], span: [f64; 2]) -> Vec<f64> {
         let [mut least, mut most] =
             samples.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], [_, value]| {
                 [least.min(*value), most.max(*value)]
@@ -118,20 +118,7 @@ impl Expression {
         }
         more.sort_by(f64::total_cmp);
         more.dedup();
-        let Some(first) = more.first().copied() else { return more };
-        let (mut last, mut shortest) = (first, f64::INFINITY);
-        let mut kept = vec![first];
-        for pair in more.windows(2) {
-            let next = pair[1] - pair[0];
-            if pair[0] > last && pair[1] - last > UNEVEN * shortest.min(next) {
-                kept.push(pair[0]);
-                (last, shortest) = (pair[0], f64::INFINITY);
-            }
-            shortest = shortest.min(next);
-        }
-        kept.extend(more.last());
-        let ends = [samples.first(), samples.last()].map(|sample| sample.map_or(0.0, |sample| sample[0]));
-        graded(&kept, ends)
+        graded(&thinned(&more), span)
     }
 
     fn stretch(&self, ends: [Sample; 2]) -> Stretch {
@@ -140,6 +127,23 @@ impl Expression {
         let unknown = (b - a).abs().max(high - a.max(b)).max(a.min(b) - low);
         Stretch { ends, unknown }
     }
+}
+
+/// Those of `times`, rising, each once, between which there is no distance much shorter than theirs; the first and the last are among them.
+fn thinned(times: &[f64]) -> Vec<f64> {
+    let Some(first) = times.first().copied() else { return Vec::new() };
+    let (mut last, mut shortest) = (first, f64::INFINITY);
+    let mut kept = vec![first];
+    for pair in times.windows(2) {
+        let next = pair[1] - pair[0];
+        if pair[0] > last && pair[1] - last > UNEVEN * shortest.min(next) {
+            kept.push(pair[0]);
+            (last, shortest) = (pair[0], f64::INFINITY);
+        }
+        shortest = shortest.min(next);
+    }
+    kept.extend(times.last().filter(|end| **end > last));
+    kept
 }
 
 /// `times`, rising, with more around those that lie close together, so that no distance is much longer than the next one: beside
@@ -203,6 +207,17 @@ mod tests {
             ends.windows(2).map(|pair| law.moments(pair[0], pair[1])[0] * (pair[1] - pair[0])).sum();
         let expected = 100.0 * 1e-4 / std::f64::consts::PI.sqrt();
         assert!((impulse / expected - 1.0).abs() < 1e-6, "{impulse}");
+    }
+
+    #[test]
+    fn steps_over_sudden_changes_are_as_even_as_the_points() {
+        let halved: Vec<f64> = [0.0, 8.0, 12.0, 14.0, 15.0, 15.5].into();
+        assert_eq!(thinned(&halved), [0.0, 12.0, 15.0, 15.5]);
+        let even: Vec<f64> = (0..=9).map(f64::from).collect();
+        assert_eq!(thinned(&even), [0.0, 4.0, 8.0, 9.0]);
+        assert_eq!((thinned(&[]), thinned(&[3.0])), (vec![], vec![3.0]));
+        assert_eq!(graded(&[10.0, 11.0], [0.0, 40.0]), [6.0, 10.0, 11.0, 15.0, 27.0]);
+        assert_eq!(graded(&[3.0], [0.0, 9.0]), [3.0]);
     }
 
     /// What is fast all the time is left to the steps, and what has no number anywhere to the run.
