@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import csv
 import json
 import os
@@ -148,10 +149,27 @@ def _size(mean: float) -> int:
     return max(1, min(_LARGEST_CALL, int(_SECONDS_A_CALL / max(mean, 1e-9))))
 
 
+class _Dask(Executor):
+    """Dask's client as an executor.
+
+    That of `Client.get_executor` fails where a worker dies between the arrival of a result at the client and its delivery: it takes the
+    result for an exception. To wait for a future of Dask computes what was lost once more.
+    """
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        async def outcome() -> Any:
+            return await self._client.submit(fn, *args, **kwargs, pure=False)
+
+        return asyncio.run_coroutine_threadsafe(outcome(), self._client.loop.asyncio_loop)
+
+
 def _pool(executor: Any) -> tuple[Executor, int]:
     """Dask's client as an executor, and how many calls are computed at a time."""
     if hasattr(executor, "get_executor"):
-        return executor.get_executor(pure=False), max(1, sum(executor.ncores().values()))
+        return _Dask(executor), max(1, sum(executor.ncores().values()))
     if not hasattr(executor, "submit"):
         raise TypeError(f"expected a concurrent.futures.Executor or a dask.distributed.Client, found {executor!r}")
     # `num_workers` is that of mpi4py; the executors of Python tell it in `_max_workers` alone.
