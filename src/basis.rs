@@ -199,7 +199,14 @@ impl Basis {
                 Interpolant::solve(&interpolation, place, &mut precisions).map(Solved::Uneven)
             };
             let failed = |quality| ill_conditioned(cell, here.start, place.nodes, kernel, quality);
-            shapes.push(shape.map_err(failed)?);
+            let shape = shape.map_err(failed)?;
+            if let Solved::Uneven(shape) = &shape {
+                let amplification = shape.amplification(&interpolation, place, &mut precisions);
+                if amplification > rpim::MOST_AMPLIFICATION {
+                    return Err(too_close(here.start, place.nodes, amplification));
+                }
+            }
+            shapes.push(shape);
         }
         let shapes = Shapes::Rpim { interpolation, shapes };
         let width = 2 * widest;
@@ -488,6 +495,21 @@ impl Basis {
                 row[2 * node + order - self.first(cell) as usize] = 1.0;
             }
         }
+    }
+}
+
+/// The error for a cell whose shape functions are so large since two nodes of its support are close.
+fn too_close(first_node: usize, nodes: &[f64], amplification: f64) -> BasisError {
+    let spacings: Vec<f64> = nodes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let closest = (0..spacings.len()).min_by(|a, b| spacings[*a].total_cmp(&spacings[*b])).unwrap_or(0);
+    let beside = |index: usize| spacings.get(index).copied().unwrap_or(0.0);
+    BasisError::NodesTooClose {
+        index: first_node + closest,
+        left: nodes[closest],
+        spacing: spacings[closest],
+        beside: beside(closest.wrapping_sub(1)).max(beside(closest + 1)),
+        amplification,
+        most: rpim::MOST_AMPLIFICATION,
     }
 }
 

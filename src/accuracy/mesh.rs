@@ -152,13 +152,17 @@ impl Mesh {
         Self { nodes, fixed: self.fixed.clone() }
     }
 
-    /// A mesh of these nodes and of those that must be.
+    /// A mesh of these nodes and of those that must be. In place of one that is nearly another that one must be.
     pub fn with(&self, nodes: &[f64]) -> Self {
-        let mut all = nodes.to_vec();
-        let missing = |s: &&f64| nodes.iter().all(|node| (node - *s).abs() > SAME * self.length());
-        all.extend(self.fixed.iter().filter(missing));
-        all.sort_by(f64::total_cmp);
-        Self { nodes: all, fixed: self.fixed.clone() }
+        let nodes = Self { nodes: nodes.to_vec(), fixed: Vec::new() }.and(&self.fixed).nodes;
+        let nearest = |s: &f64| {
+            let after = nodes.partition_point(|node| node < s).min(nodes.len() - 1);
+            let [before, after] = [nodes[after.saturating_sub(1)], nodes[after]];
+            if s - before < after - s { before } else { after }
+        };
+        let mut fixed: Vec<f64> = self.fixed.iter().map(nearest).collect();
+        fixed.dedup();
+        Self { nodes, fixed }
     }
 
     /// With more nodes, at those of the `places` that are not nearly nodes.
@@ -502,6 +506,9 @@ mod tests {
         assert_eq!(found.nodes, [0.0, 1.0, 2.0, 3.0, 4.0 + 1e-9, 5.0, 7.0, 9.0]);
         assert_eq!(found.coarser().nodes, [0.0, 2.0, 4.0 + 1e-9, 5.0, 9.0]);
         assert_eq!(found.coarsening(), None);
+        // A force and a moment that are close, and both within a cell.
+        let close = mesh(&[0.0, 5.0, 5.001, 9.0], &[0.0, 5.0, 5.001, 9.0]).with(&[0.0, 3.0, 4.998, 9.0]);
+        assert_eq!((close.nodes, close.fixed), (vec![0.0, 3.0, 4.998, 9.0], vec![0.0, 4.998, 9.0]));
         let quartered = found.quartered_parts();
         assert_eq!(quartered.nodes.len(), 11);
         assert!((quartered.nodes[6] - 4.5).abs() < 1e-9 && quartered.coarsening() == Some(2.0));

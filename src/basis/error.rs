@@ -84,6 +84,28 @@ pub enum BasisError {
         /// Smallest distance accepted here \[m\].
         least: f64,
     },
+    /// Two nodes are so much closer than those beside them that meshfree shape functions make numbers of round-off.
+    #[error(
+        "nodes {index} and {} at {left} m are {spacing:.3e} m apart beside a spacing of {beside:.3e} m: there meshfree shape functions \
+         amplify the round-off of positions {amplification:.0e} times (at most {most:.0e} leave results their digits); move the two \
+         apart, remove one, or use elements (`ancf`) in place of `rpim`",
+        index + 1
+    )]
+    NodesTooClose {
+        /// Index of the first of the two, from 0.
+        index: usize,
+        /// Its arc length \[m\].
+        left: f64,
+        /// Their distance \[m\].
+        spacing: f64,
+        /// The larger of the distances beside theirs \[m\].
+        beside: f64,
+        /// Largest second derivative in a cell that has the two in its support, of a node displaced by one, times the square of the
+        /// cell's length.
+        amplification: f64,
+        /// Largest one accepted.
+        most: f64,
+    },
     /// A parameter of the radial function permits no usable shape functions.
     #[error("{parameter} = {value} of the {kernel} kernel: {problem}")]
     KernelParameter {

@@ -17,7 +17,7 @@
 
 use std::ops::Range;
 
-use super::interpolation::{Interpolation, Place, Quality, Wanted};
+use super::interpolation::{Amount, Interpolation, Place, Quality, Wanted};
 
 use super::arithmetic::Arithmetic;
 use super::double_double::{Double, DoubleDouble};
@@ -31,6 +31,10 @@ pub const TOLERANCE: f64 = 1e-13;
 
 /// Most bits tried before the shape functions of a cell are refused as unsolvable.
 pub const MOST_BITS: usize = 16_384;
+
+/// Largest [`Interpolant::amplification`] of a cell: with more of it the tangent of stiff beams loses its sign, and the constraints of
+/// those that keep their length their independence, to round-off.
+pub const MOST_AMPLIFICATION: f64 = 1e4;
 
 /// The factors of Gᵀ at the precision that the cell needs.
 #[derive(Clone, Debug)]
@@ -139,6 +143,27 @@ impl Interpolant {
                 }
             }
         }
+    }
+
+    /// Largest second derivative within the cell that a node displaced by one makes, times the square of the cell's length.
+    ///
+    /// Of a cubic it is 6. Two nodes of the support that are closer than the cell is long make it grow about like the third power of the
+    /// ratio, since the third derivative at the two is then a coefficient, too.
+    pub fn amplification(
+        &self,
+        interpolation: &Interpolation,
+        place: Place<'_>,
+        precisions: &mut Precisions,
+    ) -> f64 {
+        let width = 2 * place.nodes.len();
+        let length = place.nodes[place.left + 1] - place.nodes[place.left];
+        let mut row = vec![0.0; width];
+        let largest = |xi: f64| {
+            let wanted = Wanted { xi, orders: &[2], stride: width, amount: Amount::Few };
+            self.rows(interpolation, place, precisions, wanted, &mut row);
+            row.iter().step_by(2).fold(0.0f64, |largest, of| largest.max(of.abs()))
+        };
+        [0.25, 0.75].map(largest).into_iter().fold(0.0, f64::max) * length * length
     }
 }
 

@@ -195,11 +195,9 @@ fn what_double_precision_cannot_resolve_says_so() {
     Scene { basis: "ancf.nodes = [0, 0.5, 1.0, 1.0000000001]", ..PLAIN }.refused(&[nodes]);
     Scene { basis: "ancf.nodes = [0, 0.5, 0.5000000000000001, 1.0]", ..PLAIN }
         .refused(&["beam `arm`: nodes 1 and 2", "apart"]);
-    for basis in [
-        "ancf.nodes = [0, 0.5, 0.500000000001, 1.0]",
-        "ancf.nodes = [0, 1e-300, 1.0]",
-        "rpim.nodes = [0, 0.25, 0.5, 0.500000000001, 0.75, 1.0]",
-    ] {
+    Scene { basis: "rpim.nodes = [0, 0.25, 0.5, 0.500000000001, 0.75, 1.0]", ..PLAIN }
+        .refused(&["beam `arm`: nodes 2 and 3", "round-off"]);
+    for basis in ["ancf.nodes = [0, 0.5, 0.500000000001, 1.0]", "ancf.nodes = [0, 1e-300, 1.0]"] {
         Scene { basis, effects: LIFT, ..PLAIN }.refused(&[
             "of beam `arm`",
             "double precision",
@@ -303,6 +301,41 @@ fn what_no_memory_holds_is_refused_with_what_it_would_need() {
         ),
     ] {
         Scene { basis, analysis, ..PLAIN }.refused(&["scene.toml:", part]);
+    }
+}
+
+/// A node beside another, at a part of the spacing: what no digits would be left of is refused with its place, and nothing else has a
+/// warning or another tip than elements find.
+#[test]
+fn meshfree_nodes_are_as_close_as_round_off_lets_them_be() {
+    let sideways = "[[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [0.1, -1.5]";
+    for axial_stiffness in ["1e3", "1e7"] {
+        let scene = Scene { axial_stiffness, effects: sideways, ..PLAIN };
+        let expected = tip(&Scene { basis: "ancf = { elements = 200 }", ..scene }.solved());
+        for count in [12, 48] {
+            let mut refused = 0;
+            for part in [0.5, 0.1, 0.05, 0.03, 0.02, 0.01, 1e-3] {
+                let middle = f64::from(count / 2);
+                let places = (0..=count).map(f64::from).chain([middle - part]);
+                let mut places: Vec<f64> = places.map(|place| place / f64::from(count)).collect();
+                places.sort_by(f64::total_cmp);
+                let basis = String::leak(format!("rpim = {{ nodes = {places:?} }}"));
+                match (Scene { basis, ..scene }).outcome() {
+                    Ok(found) => {
+                        assert!(found.run().warnings.is_empty(), "{part}: {:?}", found.run().warnings);
+                        let off = std::iter::zip(tip(&found), expected).map(|(a, b)| (a - b).abs());
+                        assert!(off.fold(0.0, f64::max) < 1e-6, "{count}, {part}");
+                        assert_eq!(refused, 0, "{part} is solved, and more was refused");
+                    }
+                    Err(why) => {
+                        let pair = format!("nodes {} and {}", count / 2, count / 2 + 1);
+                        assert!(why.contains(&pair) && why.contains("remove one"), "{part}: {why}");
+                        refused += 1;
+                    }
+                }
+            }
+            assert!((1..=4).contains(&refused), "{refused}");
+        }
     }
 }
 

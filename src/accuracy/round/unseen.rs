@@ -31,6 +31,8 @@ const MOST_ITERATIONS: usize = 10;
 
 /// Most records of which it is known where their forces pass corners of laws.
 const RECORDS: usize = 64;
+/// Of neighbouring cells of which one is shorter than this part of the other, meshfree shape functions amplify round-off fiftyfold.
+const UNEVEN: f64 = 0.2;
 /// What acts this near to a node, in cells, acts there: the error is the cube of it.
 const AT_NODE: f64 = 0.02;
 
@@ -91,9 +93,11 @@ impl Runner<'_, '_> {
                     self.families[index].of(beam, mesh.and(&corners[index]).places())
                 }
                 Some(named) => {
-                    // Meshfree shape functions reach over corners. Elements have to be shorter to err by less than those do.
+                    // Meshfree shape functions reach over corners, and beside nodes that are close they amplify round-off. Elements have
+                    // to be shorter to err by less than those do.
                     let meshfree = matches!(beam.discretization, Discretization::Rpim { .. });
-                    let dissimilar = self.dissimilar[index] || meshfree && !corners[index].is_empty();
+                    let reach = !corners[index].is_empty() || is_uneven(&named.nodes);
+                    let dissimilar = self.dissimilar[index] || meshfree && reach;
                     let named = match () {
                         () if dissimilar => named.halved().halved(),
                         () if too_coarse => named.halved(),
@@ -267,6 +271,12 @@ impl Runner<'_, '_> {
             )
         })
     }
+}
+
+/// Whether a cell is much shorter than one beside it.
+fn is_uneven(nodes: &[f64]) -> bool {
+    let cells: Vec<f64> = nodes.windows(2).map(|ends| ends[1] - ends[0]).collect();
+    cells.windows(2).any(|pair| pair[0].min(pair[1]) < UNEVEN * pair[0].max(pair[1]))
 }
 
 /// Whether something acts in a point within a cell that the scene gives a beam. `named` has nodes there, and those that the scene
