@@ -6,7 +6,7 @@ use crate::assembly::Side;
 use crate::model::{Dynamic, EventCondition, ProbeQuantity};
 use crate::results::{ProbeSeries, Shape, Trajectory};
 use crate::solve::dynamics::{self, Observed};
-use crate::system::unfold;
+use crate::system::{View, unfold};
 
 /// Round-offs of single positions that may add up in a quantity.
 const ROUND_OFFS: f64 = 4.0;
@@ -101,16 +101,19 @@ impl Sampler<'_> {
     fn quantity(&self, number: usize, quantity: ProbeQuantity) -> dynamics::Quantity<'_> {
         use dynamics::Quantity::{OfForces, OfMotion, Position};
         let ProbePoint { beam, view, measure, reference_strain, .. } = &self.probes[number];
-        let length = self.system.beams()[*beam].basis.length();
-        // The probe comes first, and then places along the beam, the last of which is its end.
-        let mut places = vec![view.s()[0]];
-        places.extend(self.frame_places(*beam, None).0);
-        let side = |s: &f64| if *s >= length { Side::Left } else { Side::Right };
-        let sides: Vec<Side> = places.iter().map(side).collect();
-        let carries = move |of: fn(&Shape) -> Option<&[f64]>| {
+        let carries = |of: fn(&Shape) -> Option<&[f64]>| {
+            let part = &self.system.beams()[*beam];
+            let length = part.basis.length();
+            // The probe comes first, and then places along the beam, the last of which is its end.
+            let mut places = vec![view.s()[0]];
+            places.extend(self.frame_places(*beam, None).0);
+            let side = |s: &f64| if *s >= length { Side::Left } else { Side::Right };
+            let sides: Vec<Side> = places.iter().map(side).collect();
+            let along = View::points(&part.basis, part.offset(), &places).ok();
             OfForces(Box::new(move |balance| {
                 let actions = self.system.actions(balance.view());
-                let shape = self.cut_shape(*beam, &places, &sides, &balance.state.q, &actions[*beam]);
+                let cut = |view| self.cut_view(*beam, view, &sides, &balance.state.q, &actions[*beam]);
+                let shape = along.as_ref().map(cut).unwrap_or_default();
                 let along = of(&shape).unwrap_or_default();
                 let value = along.first().copied().unwrap_or(f64::NAN);
                 Observed { value, along: along.iter().fold(0.0, |largest, value| largest.max(value.abs())) }

@@ -460,7 +460,19 @@ impl<'a> Sampler<'a> {
     ) -> Shape {
         let part = &self.system.beams()[beam];
         let view = View::points(&part.basis, part.offset(), s);
-        let mut shape = view.map_or_else(|_| Shape::default(), |view| self.shape_of(beam, &view, q));
+        view.map_or_else(|_| Shape::default(), |view| self.cut_view(beam, &view, sides, q, actions))
+    }
+
+    /// The same of a view of the beam.
+    pub(super) fn cut_view(
+        &self,
+        beam: usize,
+        view: &View,
+        sides: &[Side],
+        q: &[f64],
+        actions: &Actions,
+    ) -> Shape {
+        let mut shape = self.shape_of(beam, view, q);
         if shape.s.len() == sides.len() {
             self.cut(beam, actions, sides, &mut shape);
         }

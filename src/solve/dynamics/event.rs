@@ -94,6 +94,14 @@ pub(super) struct Watched {
 /// A part of a step, from 0 to 1, and the quantity on it.
 type Piece = ([f64; 2], Polynomial);
 
+/// States within a step, by their places in it: what is watched is seen at the same places, and forces in balance cost as much as an
+/// iteration.
+#[derive(Default)]
+struct Within {
+    moving: Vec<(f64, State)>,
+    balanced: Vec<(f64, Option<Balance>)>,
+}
+
 impl Driver<'_, '_> {
     /// Notes the events of the step to `new` in the order of time; returns the state of the first
     /// that ends the motion.
@@ -104,10 +112,11 @@ impl Driver<'_, '_> {
             StepControl::Fixed(_) => NOISE,
             StepControl::Tolerance(tolerance) => (NOISE_OF_FORCES * tolerance).clamp(NOISE, LARGEST_NOISE),
         };
+        let mut within = Within::default();
         // Place in the step, number and value of each.
         let mut found: Vec<(f64, usize, f64)> = Vec::new();
         for (number, watch) in task.watches.iter().enumerate() {
-            let (pieces, along) = self.pieces(watch, new, accelerations);
+            let (pieces, along) = self.pieces(watch, new, accelerations, &mut within);
             if pieces.iter().any(|(_, piece)| !(piece.at(0.0)[0] + piece.at(1.0)[0]).is_finite()) {
                 self.solution.unseen.get_or_insert((number, self.state.time));
                 continue;
@@ -182,6 +191,7 @@ impl Driver<'_, '_> {
         watch: &EventWatch<'_>,
         new: &State,
         accelerations: Option<[&[f64]; 2]>,
+        within: &mut Within,
     ) -> (Vec<Piece>, f64) {
         let h = new.time - self.state.time;
         if let Quantity::Position(view, axis) = &watch.quantity {
@@ -195,7 +205,7 @@ impl Driver<'_, '_> {
         let halvings = if matches!(watch.quantity, Quantity::OfForces(_)) { 0 } else { HALVINGS };
         let mut largest = 0.0_f64;
         let mut at = |x: f64| {
-            let seen = self.value(&watch.quantity, new, x, accelerations);
+            let seen = self.value(&watch.quantity, new, x, accelerations, within);
             largest = largest.max(seen.along);
             seen.value
         };
@@ -226,19 +236,36 @@ impl Driver<'_, '_> {
         new: &State,
         x: f64,
         accelerations: Option<[&[f64]; 2]>,
+        within: &mut Within,
     ) -> Observed {
         let time = self.state.time + x * (new.time - self.state.time);
-        let mut state = self.state.between(new, time, accelerations);
+        let between = |start: &State| start.between(new, time, accelerations);
         match quantity {
-            Quantity::Position(view, axis) => Observed::at_point(view.at_point(&state.q)[*axis]),
-            Quantity::OfMotion(value) => Observed::at_point(value(&state)),
+            Quantity::Position(view, axis) => {
+                Observed::at_point(view.at_point(&between(&self.state).q)[*axis])
+            }
+            Quantity::OfMotion(value) => {
+                Observed::at_point(value(at(&mut within.moving, x, || between(&self.state))))
+            }
             Quantity::OfForces(value) => {
-                self.settle(&mut state);
-                self.balance_within(new, &state)
-                    .map_or(Observed::at_point(f64::NAN), |balance| value(&balance))
+                let balance = at(&mut within.balanced, x, || {
+                    let mut state = between(&self.state);
+                    self.settle(&mut state);
+                    self.balance_within(new, &state)
+                });
+                balance.as_ref().map_or(Observed::at_point(f64::NAN), value)
             }
         }
     }
+}
+
+/// What is known at a place, or is found there now.
+fn at<T>(known: &mut Vec<(f64, T)>, x: f64, find: impl FnOnce() -> T) -> &T {
+    let index = known.iter().position(|(place, _)| *place == x).unwrap_or_else(|| {
+        known.push((x, find()));
+        known.len() - 1
+    });
+    &known[index].1
 }
 
 /// Where the quantity reaches `value`, and the value. What is nearer to it than `near` is at it.
