@@ -99,6 +99,8 @@ pub enum Parameter {
     },
 }
 
+/// How often the part of a step in which stability changes is halved.
+const HALVINGS: u32 = 20;
 /// Points kept: enough for the vertex of a parabola.
 const MEMORY: usize = 3;
 /// Turn of the corrector that the step control aims at \[rad\].
@@ -241,13 +243,23 @@ impl<'e, 'a> Path<'e, 'a> {
         }
     }
 
-    /// Load factor of what has changed in the last step: that of its end, or where a limit point within the step could not be
-    /// made an end, the vertex of the parabola through the last three points, if it lies between them.
-    pub fn load_of_change(&self) -> f64 {
-        let [.., a, b, c] = &self.points[..] else { return self.last().load };
+    /// Load factor at which stability has changed within the last step from what it was `before`: by bisection, or where a limit point
+    /// within the step could not be made an end, the vertex of the parabola through the last three points, if it lies between them.
+    pub fn load_of_change(&mut self, before: Stability) -> f64 {
+        let [.., b, c] = &self.points[..] else { return self.last().load };
         if !turns_within([b, c].map(Point::load_rate)) {
-            return c.load;
+            let mut bracket = [b.load, c.load];
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (bracket[0] + bracket[1]);
+                match self.between(middle).and_then(|point| point.stability) {
+                    Some(here) if !before.differs(here) => bracket[0] = middle,
+                    Some(_) => bracket[1] = middle,
+                    None => break,
+                }
+            }
+            return 0.5 * (bracket[0] + bracket[1]);
         }
+        let [.., a, b, c] = &self.points[..] else { return c.load };
         let slope = |p: &Point, q: &Point| (q.load - p.load) / (q.parameter - p.parameter);
         let (first, second) = (slope(a, b), slope(b, c));
         let bend = (second - first) / (c.parameter - a.parameter);
@@ -692,9 +704,6 @@ impl<'e, 'a> Path<'e, 'a> {
         });
         let turn = outcome?;
         (point.stability, point.soft) = self.equilibrium.stability_and_softness();
-        if self.goes_back(&before, &point) {
-            point.turn_round();
-        }
         Ok((point, turn))
     }
 

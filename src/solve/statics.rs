@@ -536,21 +536,11 @@ fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
     x.iter_mut().zip(&push).for_each(|(x, push)| *x += push);
 }
 
-/// Records a change of stability in the last step and locates it by bisection.
+/// Records a change of stability in the last step.
 fn notice(path: &mut Path<'_, '_>, known: &mut Option<Stability>, events: &mut Vec<StabilityChange>) {
-    let Some([a, b]) = path.last_two() else { return };
-    let Some(after) = b.stability else { return };
+    let Some(after) = path.last().stability else { return };
     let Some(before) = known.replace(after).filter(|before| before.differs(after)) else { return };
-    let mut bracket = (a.load, b.load);
-    for _ in 0..20 {
-        let middle = 0.5 * (bracket.0 + bracket.1);
-        match path.between(middle).and_then(|p| p.stability) {
-            Some(here) if !before.differs(here) => bracket.0 = middle,
-            Some(_) => bracket.1 = middle,
-            None => break,
-        }
-    }
-    events.push(StabilityChange { load: 0.5 * (bracket.0 + bracket.1), before, after });
+    events.push(StabilityChange { load: path.load_of_change(before), before, after });
 }
 
 /// A step of a path by arc length.
@@ -658,7 +648,7 @@ fn along_arc(
         if let Some(after) = point.stability
             && let Some(before) = known.replace(after).filter(|before| before.differs(after))
         {
-            let load = if at_limit && !reached { point.load } else { path.load_of_change() };
+            let load = if at_limit && !reached { point.load } else { path.load_of_change(before) };
             solution.events.push(StabilityChange { load, before, after });
         }
         work.add_states(system, (from.load, &from.x), (point.load, &point.x));

@@ -220,3 +220,41 @@ fn what_has_no_potential_does_not_hide_that_a_column_buckles() {
         }
     }
 }
+
+/// A straight column, of which load factors alone change up to the first critical load and beyond: P (1 − P/EA) = π² EI/4L². The path goes straight
+/// through the bifurcation, wherever the column points, and tells its load to the error of the elements, however far it goes.
+#[test]
+fn a_path_goes_straight_through_the_bifurcation_of_a_column() {
+    let critical = std::f64::consts::PI.powi(2) / 4.0;
+    for (stiffness, exact) in [
+        ("axial_stiffness = 1e3, ", 500.0 * (1.0 - (1.0 - critical / 250.0).sqrt())),
+        ("axial_stiffness = 1e8, ", critical),
+        ("", critical),
+    ] {
+        for tilt in [0.0_f64, 0.6, -0.8, 1.0] {
+            for until in [3.0, 20.0, 300.0] {
+                let (x, y) = (tilt.cos(), tilt.sin());
+                let text = format!(
+                    "beam.column = {{ start = [0, 0], end = [{x}, {y}], {stiffness}bending_stiffness = 1, basis.ancf.elements = 20 }}
+                    support = [{{ beam = 'column', at = 'start', fix = ['x', 'y', 'angle'] }}]
+                    effect.force = [{{ beam = 'column', at = 'end', value = [{}, {}] }}]
+                    analysis.static.arc_length = {{ until_load = {until} }}",
+                    -x, -y
+                );
+                let scene =
+                    ancf::scene::parse("column", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+                let Analysis::Static(settings) = scene.analysis() else { panic!("statics") };
+                let found = analysis(scene.model(), settings.clone())
+                    .unwrap_or_else(|error| panic!("{error}\n{text}"));
+                let reached = found.parameter.last().copied().unwrap_or_default();
+                assert!((reached - until).abs() < 1e-9 * until, "{text}: ends at {reached}");
+                let first = found.run.warnings.first().expect("a warning");
+                let told = first.split("load factor ").nth(1).and_then(|rest| rest.split(':').next());
+                let told: f64 = told.and_then(|told| told.parse().ok()).expect("a load factor");
+                assert!((told - exact).abs() < 5e-6, "{text}: {first}, and not {exact}");
+                let back = found.run.warnings.iter().filter(|warning| warning.contains("regains")).count();
+                assert_eq!(back, 0, "{text}: {:?}", found.run.warnings);
+            }
+        }
+    }
+}

@@ -96,6 +96,8 @@ proptest! {
         let nodes = nodes_from(&spacings, length);
         let basis = match Basis::new(&rpim(nodes, kernel, side, neighbours), length) {
             Ok(basis) => basis,
+            // Lines are reproduced there, too, but round-off is amplified.
+            Err(BasisError::NodesTooClose { spacing, beside, .. }) if spacing < 0.3 * beside => return Ok(()),
             Err(refusal) => return Err(TestCaseError::fail(refusal.to_string())),
         };
         let defects = basis.defects();

@@ -45,12 +45,19 @@ impl Path<'_, '_> {
         let bends = self.cosine(&here.rate, &beyond.rate).min(self.cosine_of_shapes(&here, &beyond)) < SMOOTH;
         let through: Vec<f64> =
             first.iter().zip(&beyond.rate).map(|(first, rate)| first + step * rate).collect();
-        bends.then(|| self.correct(&through, here.parameter + step, step).ok()).flatten()
+        if !bends {
+            return None;
+        }
+        let (mut point, turn) = self.correct(&through, here.parameter + step, step).ok()?;
+        if self.goes_back(&here, &point) {
+            point.turn_round();
+        }
+        Some((point, turn))
     }
 
     /// Whether the tangent at `point`, which points to where the step from `before` has led, points back behind a kink within
     /// that step.
-    pub(super) fn goes_back(&self, before: &Point, point: &Point) -> bool {
+    fn goes_back(&self, before: &Point, point: &Point) -> bool {
         let (Some(from), Some(to)) = (before.stability, point.stability) else { return false };
         let rates = [before.load_rate(), point.load_rate()];
         // At a limit point the sign of λ̇ tells nothing.
