@@ -213,7 +213,9 @@ impl Sampler<'_> {
                 "there are fewer load factors than were asked for: above {above:.2e} the round-off of the stiffness hides them"
             ));
         }
-        unloaded.run.warnings.extend(beyond_the_linear(modes));
+        let strained = unloaded.last.iter().flat_map(|shape| &shape.strain);
+        let strained = strained.fold(0.0, |largest: f64, strain| largest.max(strain.abs()));
+        unloaded.run.warnings.extend(beyond_the_linear(modes, strained));
         let corners = at_corners(self.model, &unloaded.last, &unloaded.run.undeformed);
         unloaded.run.warnings.extend(corners);
         unloaded.run.warnings.extend(lying_along(self.system, q));
@@ -274,11 +276,12 @@ fn shortens(part: &Arc<dyn Part>) -> bool {
 }
 
 /// The warning about critical loads at which the linear solution would turn or strain the beams, or
-/// change the loads, by more than it may.
-fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
+/// change the loads, by more than it may, where they are `strained` already by what acts before.
+fn beyond_the_linear(modes: &buckling::Modes, strained: f64) -> Option<String> {
     let numbered = || modes.load_factors.iter().zip(1..);
     let (turned, number) = numbered().find(|(load, _)| *load * modes.turn > STRAIGHT).unzip();
-    let (strained, second) = numbered().find(|(load, _)| *load * modes.strain > STRAINED).unzip();
+    let strain = |load: f64| strained + load * modes.strain;
+    let (strained, second) = numbered().find(|(load, _)| strain(**load) > STRAINED).unzip();
     let changed = numbered().zip(&modes.changes).find(|(_, change)| **change > CHANGED);
     let which = |number: Option<usize>| match number {
         Some(1) | None => String::new(),
@@ -303,7 +306,7 @@ fn beyond_the_linear(modes: &buckling::Modes) -> Option<String> {
             "{}the loads strain the beam by {:.2} before it buckles at load factor {}, by the linear solution, which holds for small strains only, as \
              does the beam itself: give a larger `axial_stiffness`, or ask for fewer critical loads",
             which(second),
-            load * modes.strain,
+            strain(*load),
             plain(*load, 6),
         )),
         (None, None, None) => None,

@@ -198,6 +198,31 @@ fn strains_of_modes_jump_where_something_acts_within_a_span() {
     }
 }
 
+/// A straight cantilever, of which actuation makes the part behind 0.3 of its length longer by 1/20, vibrates across with w' = (1 + e) θ,
+/// M' = −(1 + e) V and V' = ρA ω² w, where e is 0 before and 1/20 behind, EI = 1 and ρA = 1: the frequencies from the transfer matrix of
+/// the two parts (by SciPy's matrix exponential). The strain of the state about which it vibrates jumps.
+#[test]
+fn strains_jump_where_what_is_imposed_begins() {
+    let exact = [0.5383204493053865, 3.4066298236875547, 9.491200315682544];
+    let actuation = "effect.actuation = [{ beam = 'arm', strain = 0.05, from = 0.3, to = 1 }]";
+    for wanted in [1e-4, 1e-5, 1e-6, 1e-7] {
+        let analysis = format!(
+            "{actuation}\nanalysis.modal = {{ count = 3, about = 'equilibrium', accuracy = {wanted:e} }}"
+        );
+        let results = run(&scene(&cantilever(3857.0, 1.0, &analysis)));
+        let found = error(&results);
+        for ((f, exact), told) in
+            results.eigenvalues().iter().zip(exact).zip(found.eigenvalues.iter().copied())
+        {
+            let truth = (f / exact - 1.0).abs();
+            assert!(
+                truth <= 3.0 * told && truth <= wanted,
+                "{wanted:e}, {exact}: {truth:.1e}, told {told:.1e}"
+            );
+        }
+    }
+}
+
 /// A hinged beam of unit length, stiffness and mass vibrates with angular frequencies k²π² and buckles under k²π². Of eight
 /// half waves few cells, or half as many, see so little that two meshes may happen to agree.
 #[test]

@@ -1077,3 +1077,24 @@ fn an_obstacle_that_comes_around_a_beam_is_told_with_its_energy() {
     assert!(told.iter().any(|warning| warning.starts_with(expected)), "{told:?}");
     assert!(warned(-0.3).is_empty());
 }
+
+/// Shortened by P/EA, a column buckles where P (1 − P/EA) = π² EI/4L² = 2.467. What acts before has strained it: the linear solution for
+/// what is added errs by that strain, and says so.
+#[test]
+fn critical_loads_count_the_strain_of_what_acts_before() {
+    let column = |axial_stiffness: f64| {
+        let results = solved(&format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = {axial_stiffness}, bending_stiffness = 1, basis.ancf.elements = 24 }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{{ beam = 'arm', at = 'end', value = [-2, 0] }}, {{ beam = 'arm', at = 'end', value = [-1, 0], stage = 'two' }}]
+            stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', analysis.buckling.count = 1 }}]\n"
+        ));
+        let exact = 0.5 * axial_stiffness * (1.0 - (1.0 - PI.powi(2) / axial_stiffness).sqrt()) - 2.0;
+        let load = results[1].eigenvalues()[0];
+        (load / exact - 1.0, results[1].run().warnings.clone())
+    };
+    let (off, warnings) = column(1e4);
+    assert!(off.abs() < 1e-3 && warnings.is_empty(), "{off} {warnings:?}");
+    let (off, warnings) = column(40.0);
+    assert!(off < -0.05 && warnings[0].contains("strain the beam by 0.06"), "{off} {warnings:?}");
+}

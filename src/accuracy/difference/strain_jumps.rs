@@ -88,7 +88,9 @@ pub(in crate::accuracy) fn jumps_of_modes(model: &Model, beam: usize, length: f6
     if axial_stiffness.is_none() || bending_stiffness.is_none() {
         return softer;
     }
-    within(points(model, beam).chain(softer), length)
+    // Where what is imposed ends, or the force of a tendon, the strain of the state about which they are jumps.
+    let jumps = model.parts.iter().flat_map(|part| part.jumps()).filter(|at| at.beam == beam);
+    within(points(model, beam).chain(jumps.map(|at| at.s)).chain(softer), length)
 }
 
 /// The arc lengths at which parts, joints and supports act in a point of a beam.
