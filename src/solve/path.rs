@@ -99,8 +99,10 @@ pub enum Parameter {
     },
 }
 
-/// How often the part of a step in which stability changes is halved.
+/// How often the part of a step in which stability changes is halved at most …
 const HALVINGS: u32 = 20;
+/// … and the part of its load factor to which it is: nearer to a singular tangent round-off decides.
+const SEPARATE: f64 = 1e-7;
 /// Points kept: enough for the vertex of a parabola.
 const MEMORY: usize = 3;
 /// Turn of the corrector that the step control aims at \[rad\].
@@ -251,6 +253,9 @@ impl<'e, 'a> Path<'e, 'a> {
             let mut bracket = [b.load, c.load];
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (bracket[0] + bracket[1]);
+                if (bracket[1] - bracket[0]).abs() < SEPARATE * middle.abs() {
+                    break;
+                }
                 match self.between(middle).and_then(|point| point.stability) {
                     Some(here) if !before.differs(here) => bracket[0] = middle,
                     Some(_) => bracket[1] = middle,
@@ -704,6 +709,9 @@ impl<'e, 'a> Path<'e, 'a> {
         });
         let turn = outcome?;
         (point.stability, point.soft) = self.equilibrium.stability_and_softness();
+        if self.goes_back(&before, &point) {
+            point.turn_round();
+        }
         Ok((point, turn))
     }
 

@@ -16,6 +16,10 @@ use super::{LEAVES_TURN, Parameter, Path, Point};
 const LOOKED_AT: f64 = 1e-4;
 /// Cosine of the angle of two tangents that are those of one smooth curve, in so short a step or at a bifurcation.
 const SMOOTH: f64 = 0.5;
+/// Part of the work of loads along a tangent that is left where the stiffness is another one. From 1 on the load turns back.
+const JUMPS: f64 = 0.5;
+/// The same part of what that work would be at most: a shape that does not change but by round-off does no work.
+const ROUND_OFF: f64 = 1e-6;
 
 impl Path<'_, '_> {
     /// The point beyond a kink that lies within a step of length `step` which has failed, and by how much it has turned against
@@ -45,19 +49,15 @@ impl Path<'_, '_> {
         let bends = self.cosine(&here.rate, &beyond.rate).min(self.cosine_of_shapes(&here, &beyond)) < SMOOTH;
         let through: Vec<f64> =
             first.iter().zip(&beyond.rate).map(|(first, rate)| first + step * rate).collect();
-        if !bends {
+        if !(bends && self.stiffens(&here, &beyond)) {
             return None;
         }
-        let (mut point, turn) = self.correct(&through, here.parameter + step, step).ok()?;
-        if self.goes_back(&here, &point) {
-            point.turn_round();
-        }
-        Some((point, turn))
+        self.correct(&through, here.parameter + step, step).ok()
     }
 
     /// Whether the tangent at `point`, which points to where the step from `before` has led, points back behind a kink within
     /// that step.
-    fn goes_back(&self, before: &Point, point: &Point) -> bool {
+    pub(super) fn goes_back(&mut self, before: &Point, point: &Point) -> bool {
         let (Some(from), Some(to)) = (before.stability, point.stability) else { return false };
         let rates = [before.load_rate(), point.load_rate()];
         // At a limit point the sign of λ̇ tells nothing.
@@ -67,6 +67,33 @@ impl Path<'_, '_> {
             && !at_limit
             && turns != from.changes_sign(to)
             && self.cosine_of_shapes(before, point) < SMOOTH
+            && self.stiffens(before, point)
+    }
+
+    /// Whether the stiffness jumps on the way from `before` to `point`, by so much that the load factor along the tangent of the first
+    /// would change to the other side: no shape changes by K ẋ = −λ̇ ∂R/∂λ at both.
+    ///
+    /// Beside a bifurcation the tangent at `point` may be round-off, as where load factors change alone. The one before is not, and if the
+    /// stiffness is the same, it still leaves no residual.
+    fn stiffens(&mut self, before: &Point, point: &Point) -> bool {
+        let h = point.parameter - before.parameter;
+        let n = self.equilibrium.system().coordinates();
+        let load = point.load + h * before.load_rate();
+        let mut work_of = |share: f64| {
+            let rates = &before.rate[..before.x.len()];
+            let increment: Vec<f64> = rates.iter().map(|rate| share * h * rate).collect();
+            let mut x = point.x.clone();
+            self.equilibrium.retraction.apply(&increment, &mut x);
+            self.equilibrium.system().supports().impose(load, &mut x[..n]);
+            let mut negative = vec![0.0; x.len()];
+            self.equilibrium.residual(load, &x, &mut negative);
+            self.equilibrium.system().supports().from_frames(load, &mut negative[..n]);
+            let along: f64 = negative.iter().zip(rates).take(n).map(|(force, rate)| force * rate).sum();
+            let sizes = [&negative[..n], &rates[..n]].map(|of| of.iter().map(|x| x * x).sum::<f64>());
+            [along.abs(), (sizes[0] * sizes[1]).sqrt()]
+        };
+        let [[left, _], [of_load, most]] = [1.0, 0.0].map(&mut work_of);
+        left > JUMPS * of_load && left > ROUND_OFF * most
     }
 
     /// Cosine of the angle between two tangents.
