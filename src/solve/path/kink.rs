@@ -70,11 +70,12 @@ impl Path<'_, '_> {
             && self.stiffens(before, point)
     }
 
-    /// Whether the stiffness jumps on the way from `before` to `point`, by so much that the load factor along the tangent of the first
-    /// would change to the other side: no shape changes by K ẋ = −λ̇ ∂R/∂λ at both.
+    /// Whether the stiffness jumps on the way from `before` to `point`, by so much that the load factor has to change to the other
+    /// side. The tangent before, with K ẋ = −λ̇ ∂R/∂λ there, leaves no residual where the stiffness is still the same; where it has
+    /// become K + ΔK, the work ẋᵀ ΔK ẋ is left of that of the loads, λ̇ ẋᵀ ∂R/∂λ.
     ///
-    /// Beside a bifurcation the tangent at `point` may be round-off, as where load factors change alone. The one before is not, and if the
-    /// stiffness is the same, it still leaves no residual.
+    /// At a bifurcation the stiffness is the same, however uncertain the tangent at `point` is: close to a singular K it may be
+    /// round-off, as where load factors change nearly alone.
     fn stiffens(&mut self, before: &Point, point: &Point) -> bool {
         let h = point.parameter - before.parameter;
         let n = self.equilibrium.system().coordinates();
