@@ -3,7 +3,7 @@
 
 use super::{Written, near};
 use ancf::output::{OutputOptions, write};
-use ancf::results::Results;
+use ancf::results::{Event, Results};
 use ancf::run::{Options, model_of_stage, solve_stages};
 use ancf::scene::{Scene, parse};
 use std::f64::consts::PI;
@@ -1097,4 +1097,36 @@ fn critical_loads_count_the_strain_of_what_acts_before() {
     assert!(off.abs() < 1e-3 && warnings.is_empty(), "{off} {warnings:?}");
     let (off, warnings) = column(40.0);
     assert!(off < -0.05 && warnings[0].contains("strain the beam by 0.07"), "{off} {warnings:?}");
+}
+
+/// A bar falls flat on the ground by 0.3 m and is stopped where it is lowest, at rest. From there on the ground gives it the momentum with which it
+/// leaves, m √(2 g h), and takes its weight: what acted before belongs to the stage before.
+#[test]
+fn impulses_count_from_where_a_stage_begins() {
+    for method in ["radau.tolerance = 1e-6", "generalized_alpha.step = 2e-4", "gauss.step = 1e-3"] {
+        let results = solved(&format!(
+            "beam.b = {{ start = [0, 0.3], end = [1, 0.3], axial_stiffness = 1e4, bending_stiffness = 1e2, mass_per_length = 2, basis.ancf.elements = 4 }}
+            probe = [{{ name = 'm', beam = 'b', at = 0.5 }}]
+            [effect]
+            gravity.acceleration = [0, -10]
+            contact = [{{ beam = 'b', half_plane = {{ point = [0, 0], normal = [0, 1] }}, stiffness = 5e4 }}]
+            [[stage]]
+            name = 'falls'
+            analysis.dynamic = {{ duration = 1, {method}, event = [{{ probe = 'm', minimum = 'y', stop = true }}] }}
+            [[stage]]
+            name = 'rises'
+            analysis.dynamic = {{ duration = 0.1, {method} }}\n"
+        ));
+        let [Results::Trajectory(falls), Results::Trajectory(rises)] = &results[..] else {
+            panic!("two motions")
+        };
+        let start = falls.parameter.last().copied().expect("an end");
+        let ended = rises.events.iter().find_map(|event| match event {
+            Event::Contact { time, impulse: Some(impulse), .. } => Some((*time, impulse.impulse[1])),
+            _ => None,
+        });
+        let (end, impulse) = ended.expect("an end of the contact");
+        let expected = 2.0 * (6.0_f64.sqrt() + 10.0 * (end - start));
+        near(impulse, expected, 5e-4, method);
+    }
 }

@@ -151,6 +151,9 @@ impl Driver<'_, '_> {
                     Some(time) => (self.state.time, time),
                     None => (self.state.time, new.time),
                 };
+                // What acts before a motion goes on where another one has ended belongs to that one.
+                let taken_up = begin < self.first.time;
+                let (begin, end) = (begin.max(self.first.time), end.max(self.first.time));
                 let within = |at: f64| {
                     let state = self.state.between(new, begin + at * (end - begin), None);
                     self.system.contact_force(contact, &state.q).unwrap_or_default()
@@ -162,6 +165,7 @@ impl Driver<'_, '_> {
                     impulse.largest_force = impulse.largest_force.max(force[0].hypot(force[1]));
                 };
                 if self.method.order() <= 2.0 {
+                    let before = if taken_up { within(0.0) } else { before };
                     [(1.0, before), (4.0, within(0.5)), (1.0, force)]
                         .into_iter()
                         .for_each(|(weight, force)| add(weight / 6.0, force));
