@@ -189,6 +189,13 @@ fn merged(times: impl Iterator<Item = f64>) -> Vec<f64> {
     times
 }
 
+/// Those of `times`, rising, that have another one no farther than `near`; without a bound all.
+fn with_neighbours(times: &[f64], near: f64) -> Vec<f64> {
+    let after = |i: usize| times.get(i + 1).map_or(f64::INFINITY, |next| next - times[i]);
+    let before = |i: usize| i.checked_sub(1).map_or(f64::INFINITY, after);
+    (0..times.len()).filter(|&i| before(i).min(after(i)) <= near).map(|i| times[i]).collect()
+}
+
 /// ∫₀¹ f dx and ∫₀¹ (1 − x) f dx; exact for polynomials up to degree 10.
 fn quadrature(time: impl Fn(f64) -> f64, mut f: impl FnMut(f64) -> f64) -> [f64; 2] {
     GAUSS_6.iter().fold([0.0; 2], |[mean, moment], (x, weight)| {
@@ -287,12 +294,15 @@ impl Law {
         }
     }
 
-    /// Times between `start` and `end`, rising, that divide the changes of an expression evenly. Other laws have none: their
-    /// kinks say enough.
-    pub fn turns(&self, span: [f64; 2]) -> Vec<f64> {
+    /// Times between `start` and `end`, rising, that divide the changes of an expression evenly: those
+    /// that are no farther than `near` from another one of the same expression. Other laws have none:
+    /// their kinks say enough.
+    pub fn turns(&self, span: [f64; 2], near: f64) -> Vec<f64> {
         match self {
-            Self::Expression(expression) => expression.turns(span),
-            Self::Sum(laws) | Self::Product(laws) => merged(laws.iter().flat_map(|law| law.turns(span))),
+            Self::Expression(expression) => with_neighbours(&expression.turns(span), near),
+            Self::Sum(laws) | Self::Product(laws) => {
+                merged(laws.iter().flat_map(|law| law.turns(span, near)))
+            }
             _ => Vec::new(),
         }
     }
@@ -514,17 +524,20 @@ mod tests {
     #[test]
     fn an_expression_turns_where_its_value_changes() {
         let pulse = written("exp(-((t-3.37)/1e-3)^2)", vec![]);
-        let turns = pulse.turns([0.0, 10.0]);
+        let turns = pulse.turns([0.0, 10.0], f64::INFINITY);
         let near = turns.iter().filter(|t| (**t - 3.37).abs() < 1e-2).count();
         assert!(near >= 32 && turns.len() < near + 16, "{turns:?}");
-        let even = written("3 - 2*t", vec![]).turns([1.0, 2.0]);
+        let even = written("3 - 2*t", vec![]).turns([1.0, 2.0], f64::INFINITY);
         let expected = (1..=64).map(|k| 1.0 + f64::from(k) / 64.0);
         assert!(even.len() == 64 && even.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4), "{even:?}");
         for constant in ["2", "1e-320*t", "ln(-t)"] {
-            assert_eq!(written(constant, vec![]).turns([0.0, 1.0]), [0.0; 0]);
+            assert_eq!(written(constant, vec![]).turns([0.0, 1.0], f64::INFINITY), [0.0; 0]);
         }
         let both = Law::Sum(vec![pulse, Law::Step { start: 1.0 }, written("t", vec![])]);
-        assert_eq!(both.turns([0.0, 10.0]).len(), turns.len() + 64);
+        assert_eq!(both.turns([0.0, 10.0], f64::INFINITY).len(), turns.len() + 64);
+        // Steps of 0.1 s end at the pulse alone, wherever the turns of the other law lie.
+        let sharp = both.turns([0.0, 10.0], 0.1);
+        assert!(sharp.len() >= near && sharp.iter().all(|t| (t - 3.37).abs() < 0.3), "{sharp:?}");
     }
 
     #[test]

@@ -53,9 +53,10 @@ impl System {
     }
 
     /// Times between `start` and `end` at which steps should end, so that they see what laws do that
-    /// nobody knows beforehand ([`Law::turns`]); in no particular order.
-    pub fn turns_of_laws(&self, [start, end]: [f64; 2]) -> Vec<f64> {
-        self.laws().flat_map(|law| law.turns([start, end])).collect()
+    /// nobody knows beforehand: those that are no farther than `near` from another one of the same law
+    /// ([`Law::turns`]); in no particular order.
+    pub fn turns_of_laws(&self, [start, end]: [f64; 2], near: f64) -> Vec<f64> {
+        self.laws().flat_map(|law| law.turns([start, end], near)).collect()
     }
 
     /// Times between `start` and `end` at which steps should end, because loads with formulas of place

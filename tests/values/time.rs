@@ -311,6 +311,33 @@ fn no_step_passes_over_a_pulse() {
     }
 }
 
+/// A load acts as its two halves do, and takes the same steps: an expression divides steps of fixed
+/// length only where it changes within one, not where it stands twice.
+#[test]
+fn halves_of_an_expression_act_as_the_whole() {
+    let law = "expression = 'sin(14*t)'";
+    let of = |effects: &str| {
+        Written::of(&format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 3 }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{effects}]
+            probe = [{{ name = 'end', beam = 'arm', at = 'end' }}]
+            analysis.dynamic = {{ duration = 1, output_every = 0.1, gauss.step = 0.00390625 }}\n"
+        ))
+    };
+    let force = |value: f64, law: &str| {
+        format!("{{ beam = 'arm', at = 'end', value = [0, {value}], in_time = {{ {law} }} }}")
+    };
+    let whole = of(&force(0.5, law));
+    let half = force(0.25, law);
+    let halves = of(&format!("{half}, {half}"));
+    let sum = of(&force(0.25, &format!("sum = [{{ {law} }}, {{ {law} }}]")));
+    for other in [halves, sum] {
+        let [a, b] = [&whole, &other].map(|found| found.column("probes.csv", "end.y"));
+        a.iter().zip(&b).for_each(|(a, b)| near(*a, *b, 1e-12, "the place of the tip"));
+    }
+}
+
 /// A load that is written as an expression acts as the same load in other words, and an expression
 /// has its kinks where it says: the motion of a point that is moved by it.
 #[test]

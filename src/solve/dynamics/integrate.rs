@@ -265,10 +265,15 @@ impl<'t, 'a> Driver<'t, 'a> {
         let touching =
             contacts.map(|contact| ContactState::new(system.contact_force(contact, &state.q))).collect();
         let mut kinks = system.kinks();
-        kinks.extend(sharp_turns(system.turns_of_laws([state.time, task.duration]), control));
-        if let StepControl::Fixed(step) = control {
-            kinks.extend(system.short_changes(step));
-        }
+        // Steps of fixed length end only at changes that are shorter than they are.
+        let near = match control {
+            StepControl::Fixed(step) => {
+                kinks.extend(system.short_changes(step));
+                step
+            }
+            StepControl::Tolerance(_) => f64::INFINITY,
+        };
+        kinks.extend(system.turns_of_laws([state.time, task.duration], near));
         kinks.retain(|kink| *kink > state.time && *kink <= task.duration);
         kinks.sort_by(f64::total_cmp);
         let next_record = (first.time / task.output_every + 1.0 + SLACK).floor() as u64;
@@ -662,17 +667,6 @@ pub(super) fn turned(directions: &[View], state: &State) -> Vec<f64> {
     let known = state.angles.iter().copied().chain(std::iter::repeat(f64::NAN));
     let angles = directions.iter().map(|view| view.fields(&state.q).angle()).zip(known);
     angles.map(|(angle, near)| unfold(angle, near.is_finite().then_some(near))).collect()
-}
-
-/// Those of `turns`, rising, that steps have to end at: all if steps follow a tolerance; of fixed
-/// steps, those that lie within one step of another.
-fn sharp_turns(turns: Vec<f64>, control: StepControl) -> Vec<f64> {
-    let StepControl::Fixed(step) = control else { return turns };
-    let near = |a: usize, b: usize| turns.get(a).zip(turns.get(b)).is_some_and(|(a, b)| b - a < step);
-    (0..turns.len())
-        .filter(|&i| near(i, i + 1) || i.checked_sub(1).is_some_and(|before| near(before, i)))
-        .map(|i| turns[i])
-        .collect()
 }
 
 /// Whether `time` lies in the step of fixed length that is to be taken next; a saved state may

@@ -163,8 +163,11 @@ fn decide(case: &Case, way: Way, measured: Measured, other: &str, rng: &mut Rng)
     if value <= allowed * factor {
         return Verdict::Unstable;
     }
+    // Which point sticks first decides where others stick, and to which side beams give way that begin
+    // compressed.
+    let by_chance = settings::has_friction(&case.scene) || settings::begins_elsewhere(&case.scene);
     let mut by_order = || ALLOWED * neighbour::apart_by_order(&case.scene, &case.frame, rng);
-    if places && settings::has_friction(&case.scene) && value <= by_order() {
+    if places && by_chance && value <= by_order() {
         return Verdict::Unstable;
     }
     let says = format!(
@@ -514,7 +517,9 @@ fn in_two_files(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     if stages::ends_shape_functions(&first, &rest) {
         return Verdict::NotApplicable;
     }
-    let tendons = |scene: &Table| settings::items(scene, &["effect", "tendon"]).count();
+    let inner = |scene: &Table| -> usize {
+        ["tendon", "actuation"].map(|kind| settings::items(scene, &["effect", kind]).count()).iter().sum()
+    };
     let half = match other(&first, frame, way) {
         Ok(half) => half,
         Err(verdict) => return verdict,
@@ -532,9 +537,10 @@ fn in_two_files(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
         }
         // A path in a file of its own does not know that the state before it holds what only loads hold.
         Outcome::Refused(said) if said.contains("is under-supported") => return Verdict::NotApplicable,
-        // Stages let a tendon go as it is. A state does not know of it: the forces that it has left keep
-        // their directions as they fade, and a state that needs it to be stable has no other way.
-        Outcome::Failed(_) | Outcome::Refused(_) if tendons(&first) > tendons(&rest) => {
+        // Stages let a tendon or an actuation go as it is. A state does not know of it: the forces that it
+        // has left keep their directions as they fade, and a state that needs it to be stable has no other
+        // way.
+        Outcome::Failed(_) | Outcome::Refused(_) if inner(&first) > inner(&rest) => {
             return Verdict::NotApplicable;
         }
         Outcome::Failed(said) | Outcome::Refused(said) => {

@@ -316,6 +316,11 @@ pub fn has_friction(scene: &Table) -> bool {
     items(scene, &["effect", "contact"]).any(|contact| contact.contains_key("friction"))
 }
 
+/// Whether a beam begins in another shape than the stress-free one, where no path starts.
+pub fn begins_elsewhere(scene: &Table) -> bool {
+    beams(scene).any(|(_, beam)| beam.contains_key("initial_shape"))
+}
+
 /// Whether an equilibrium contains a string without a load along its whole length: then any of its
 /// shapes is one.
 pub fn is_slack(scene: &Table) -> bool {

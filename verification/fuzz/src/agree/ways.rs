@@ -139,7 +139,7 @@ pub fn load_steps(scene: &Table, rng: &mut Rng) -> Option<Table> {
     let table = settings::table(analyses.get_mut(index)?, &["static"])?;
     let steps = statics.get("steps").and_then(Value::as_integer);
     // A path may pass the full load on another branch, which is not asked for here.
-    if rng.u8(0..4) == 0 && !rests_on_weight(scene) && !begins_bent(scene) {
+    if rng.u8(0..4) == 0 && !rests_on_weight(scene) && !settings::begins_elsewhere(scene) {
         let mut path = Table::new();
         path.insert("until_load".into(), 1.0.into());
         table.remove("steps");
@@ -151,11 +151,6 @@ pub fn load_steps(scene: &Table, rng: &mut Rng) -> Option<Table> {
         table.insert("steps".into(), (steps.unwrap_or(1) * rng.i64(2..8)).into());
     }
     Some(other)
-}
-
-/// Whether a beam begins in another shape than the stress-free one, where no path starts.
-fn begins_bent(scene: &Table) -> bool {
-    settings::beams(scene).any(|(_, beam)| beam.contains_key("initial_shape"))
 }
 
 /// Whether the scene has strings, so that a path is refused although an equilibrium is not.
