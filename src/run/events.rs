@@ -35,23 +35,24 @@ impl Sampler<'_> {
         settings.events.iter().map(watch).collect()
     }
 
-    /// Warnings about probes that are watched and move, but by no more than what counts as round-off: no
+    /// Warnings about probes that are watched and move, but by no more than what counts as an error: no
     /// event was found there, however the quantity turned.
     pub(super) fn hardly_moving(&self, settings: &Dynamic, trajectory: &Trajectory) -> Vec<String> {
         let length = self.system.length();
+        let least = dynamics::least_change(settings.integrator.step_control());
         let watched = |name: &String| settings.events.iter().any(|event| event.probe == *name);
         let moved = |probe: &ProbeSeries| {
             let first = probe.samples.first()?;
             let far = (first.x.hypot(first.y) / length).max(1.0);
             let distances = probe.samples.iter().map(|at| (at.x - first.x).hypot(at.y - first.y) / length);
             let moved = distances.fold(0.0, f64::max);
-            (moved > REST * far && moved < STILL * far).then_some(moved)
+            (moved > REST * far && moved < least * far).then_some(moved)
         };
         let warning = |probe: &ProbeSeries| {
             moved(probe).map(|moved| {
                 format!(
-                    "probe `{}` moves by {moved:.1e} beam lengths at most: events of so small a motion cannot be told from round-off \
-                     and are not looked for; with a larger load they are",
+                    "probe `{}` moves by {moved:.1e} beam lengths at most: events of so small a motion cannot be told from its errors \
+                     and are not looked for; with a larger load, or a smaller tolerance down to 1e-6, they are",
                     probe.name
                 )
             })

@@ -48,7 +48,7 @@ use crate::system::Reaction;
 use serde::{Deserialize, Serialize};
 
 pub use contact::Change;
-pub use event::{EventWatch, Observed, Quantity};
+pub use event::{EventWatch, Observed, Quantity, least_change};
 pub use integrate::{Checkpointing, STEP_PART, Task, solve};
 pub use memory::Memory;
 

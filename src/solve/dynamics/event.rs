@@ -15,6 +15,8 @@ use crate::system::View;
 
 /// Largest error of a polynomial, relative to the change of the quantity in the step.
 const CLOSE: f64 = 1e-8;
+/// Changes of positions below this part of what the tolerance of a motion allows are errors of its steps, and no turns.
+const NOISE_OF_POSITIONS: f64 = 1e-3;
 /// How often a step is halved at most to represent a quantity.
 const HALVINGS: u32 = 4;
 /// Changes below this part of the largest value so far, of forces along the whole beam, are errors of the integration, and
@@ -26,6 +28,15 @@ const NOISE_OF_FORCES: f64 = 10.0;
 const LARGEST_NOISE: f64 = 1e-2;
 /// Places at which a polynomial is compared with the quantity.
 const BETWEEN: [f64; 3] = [0.2, 0.5, 0.8];
+
+/// The smallest change of a position between turns that can be told from round-off and from the errors
+/// of steps \[beam lengths\].
+pub fn least_change(control: StepControl) -> f64 {
+    match control {
+        StepControl::Fixed(_) => NEAR,
+        StepControl::Tolerance(tolerance) => NEAR.max(NOISE_OF_POSITIONS * tolerance),
+    }
+}
 
 /// A quantity that is watched.
 pub struct EventWatch<'t> {
@@ -131,7 +142,7 @@ impl Driver<'_, '_> {
                 .flat_map(|(_, piece)| [0.0, 1.0].map(|x| (watched(piece.at(x)[0]) - zero).abs()));
             memory.largest = ends.fold(memory.largest.max(along), f64::max);
             let (unit, noise) = match watch.quantity {
-                Quantity::Position(..) => (self.system.length(), NEAR),
+                Quantity::Position(..) => (self.system.length(), least_change(self.control)),
                 Quantity::OfMotion(_) => (memory.largest, NOISE),
                 Quantity::OfForces(_) => (memory.largest, noise_of_forces),
             };
