@@ -63,6 +63,15 @@ pub trait FrictionEffect: Send + Sync {
         workspace: &mut Workspace,
     );
 
+    /// `k += ` the part of the derivative by which the forces of sliding points follow the pressure.
+    fn add_tangent_by_pressure(
+        &self,
+        accepted: &AcceptedState,
+        q: &[f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    );
+
     /// The pieces that touch in the state `q` with their elastic slips, and the energy of these
     /// slips \[J\].
     fn slips(&self, accepted: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64);

@@ -31,6 +31,8 @@ pub struct Equilibrium<'a> {
     prescribed_rate: Vec<f64>,
     /// The last accepted state, for effects that depend on the path.
     accepted: AcceptedState,
+    /// The load factor and the coordinates at which the tangent is.
+    linearized: (f64, Vec<f64>),
     /// Counts so far.
     pub statistics: Statistics,
 }
@@ -48,6 +50,7 @@ impl<'a> Equilibrium<'a> {
             workspace: Workspace::default(),
             prescribed_rate: vec![0.0; n],
             accepted: AcceptedState { q: system.start().to_vec(), variables: system.start_history().1 },
+            linearized: (0.0, system.start().to_vec()),
             statistics: Statistics::default(),
         }
     }
@@ -196,6 +199,8 @@ impl<'a> Equilibrium<'a> {
         self.statistics.tangent_evaluations += 1;
         self.statistics.factorizations += 1;
         let q = &x[..n];
+        self.linearized.0 = load;
+        self.linearized.1.copy_from_slice(q);
         let force = &mut negative[..n];
         system.force_and_tangent(load, q, earlier, force, &mut self.tangent, &mut self.workspace);
         system.add_history_and_tangent(&self.accepted, q, force, &mut self.tangent, &mut self.workspace);
@@ -272,9 +277,16 @@ impl<'a> Equilibrium<'a> {
     }
 
     /// Number of negative eigenvalues of the symmetric part of the last tangent, on the motions that
-    /// constraints and supports allow. Where it is zero, no direction has lost its stiffness.
+    /// constraints and supports allow. Where it is zero, no direction has lost its stiffness. That the
+    /// friction of a point which slides follows the pressure is left out: the symmetric part of that is
+    /// indefinite wherever anything slides, and takes no stiffness from what it slows down.
     pub fn soft_directions(&self) -> Option<usize> {
-        let symmetric = self.tangent.symmetric_part();
+        let mut symmetric = self.tangent.symmetric_part();
+        let (load, q) = &self.linearized;
+        if let Some(sliding) = self.system.tangent_of_sliding(*load, &self.accepted, q) {
+            symmetric.add(-1.0, &sliding.symmetric_part());
+            self.system.supports().eliminate(*load, &mut symmetric);
+        }
         let factor = Factor::new(&symmetric, &self.border).ok()?;
         factor.negative_directions(&symmetric, &self.border)
     }

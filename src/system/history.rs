@@ -47,6 +47,20 @@ impl System {
             .for_each(|winding| winding.add_force_and_tangent(accepted, q, f, k, workspace));
     }
 
+    /// The part of the derivative by which the friction of sliding points follows the force that presses
+    /// them together, in the supports' frames; `None` without friction.
+    pub fn tangent_of_sliding(&self, load: f64, accepted: &AcceptedState, q: &[f64]) -> Option<Matrix> {
+        if self.terms.friction.is_empty() {
+            return None;
+        }
+        let (mut k, mut workspace) = (self.matrix(), Workspace::default());
+        for friction in &self.terms.friction {
+            friction.add_tangent_by_pressure(accepted, q, &mut k, &mut workspace);
+        }
+        self.supports.turn_matrix(load, &mut k);
+        Some(k)
+    }
+
     /// The internal variables in the state `q`, where `accepted` is the last accepted state.
     pub fn internal_variables(&self, accepted: &AcceptedState, q: &[f64]) -> InternalVariables {
         let mut variables = InternalVariables::default();

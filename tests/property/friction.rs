@@ -287,6 +287,36 @@ fn a_belt_over_a_disc_is_held_as_a_capstan_holds_it() {
     }
 }
 
+/// The same of a string, whose belt leaves the disc where it is pulled and held. What slides takes no
+/// stiffness from what it slows down: iterations do not grow with the stiffness of the contact.
+#[test]
+fn a_string_over_a_disc_is_held_as_a_capstan_holds_it() {
+    for stiffness in [1e4_f64, 1e6] {
+        let scene = format!(
+            "beam.a = {{ arc = {{ center = [0, 0], radius = 1, from = 0.3, to = 2.3 }}, axial_stiffness = 1e4, basis.ancf.elements = 64 }}
+            support = [{{ beam = 'a', at = 'start', fix = ['x', 'y'] }}]
+            effect.force = [{{ beam = 'a', at = 'end', value = [{:?}, {:?}] }}]
+            effect.contact = [{{ beam = 'a', circle = {{ center = [0, 0], radius = 1 }}, stiffness = {stiffness:?}, friction.coefficient = 0.3 }}]
+            probe = [{{ name = 'end', beam = 'a', at = 'end' }}]
+            output.reactions = true
+            analysis.static = {{}}",
+            -10.0 * 2.3_f64.sin(),
+            10.0 * 2.3_f64.cos(),
+        );
+        let trajectory = solved(&scene).unwrap_or_else(|error| panic!("{stiffness}: {error}"));
+        let held = trajectory.reactions[0].samples.last().expect("a reaction");
+        let (held, expected) = (held.fx.hypot(held.fy), 10.0 * (-0.3 * 2.0_f64).exp());
+        // A string that sinks in by T/k leaves the disc √(2 T/k) before each of its ends.
+        let early = 0.3 * 2.0 * (2.0 * 10.0 / stiffness).sqrt();
+        assert!(
+            (0.0..early).contains(&(held / expected - 1.0)),
+            "{stiffness}: held by {held} N, not {expected} N"
+        );
+        let iterations = trajectory.run.statistics.newton_iterations;
+        assert!(iterations < 1000, "{stiffness}: {iterations}");
+    }
+}
+
 /// A bar that lies on a slope, with a gap that is zero but for round-off, slides down by
 /// ½ g (sin α − μ cos α) t², whatever the slope.
 #[test]

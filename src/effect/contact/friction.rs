@@ -68,6 +68,8 @@ struct Touching {
     slides: bool,
     /// k_t ∂(e ∂σ/∂r)/∂r.
     stiffness: Matrix2<f64>,
+    /// The part of it by which the force of a sliding point follows the pressure.
+    by_pressure: Matrix2<f64>,
 }
 
 /// The friction of a contact.
@@ -129,6 +131,28 @@ impl FrictionIntegral {
         point.along * (self.friction.stiffness * point.slip * point.weight)
     }
 
+    /// `k += ` the matrices `of` the touching points.
+    fn add_matrices(
+        &self,
+        accepted: &AcceptedState,
+        q: &[f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+        mut of: impl FnMut(usize, &Touching) -> Matrix2<f64>,
+    ) {
+        let cells = &self.contact.cells;
+        let width = cells.width();
+        let products = &mut workspace.products;
+        products.resize(4 * width, 0.0);
+        let mut row = vec![0.0; width];
+        self.for_touching(accepted, q, |cell, _, point| {
+            let matrix = of(cell, point);
+            cells.row(cell, &point.values, &mut row);
+            multiply_rows::<1>(point.weight, &[[matrix]], &row, width, &mut products[..4 * width]);
+            add_tiles::<1>(&row, &products[..4 * width], width, cells.coordinates(cell).start / 4, k);
+        });
+    }
+
     /// The return mapping at a point.
     fn map(
         &self,
@@ -163,8 +187,10 @@ impl FrictionIntegral {
             true if new => (limit * trial.signum(), along * (limit / trial.abs().max(f64::MIN_POSITIVE))),
             true => (limit * trial.signum(), normal * (-per_depth * trial.signum())),
         };
-        let stiffness = (along * change.transpose() + bend * slip) * stiffness;
-        Touching { weight, values, slip, along, limit, slides, stiffness }
+        let change = along * change.transpose() * stiffness;
+        let by_pressure = if slides && !new { change } else { Matrix2::zeros() };
+        let stiffness = change + bend * (slip * stiffness);
+        Touching { weight, values, slip, along, limit, slides, stiffness, by_pressure }
     }
 }
 
@@ -194,18 +220,21 @@ impl FrictionEffect for FrictionIntegral {
         workspace: &mut Workspace,
     ) {
         let mut sum = ControlForces::default();
-        let cells = &self.contact.cells;
-        let width = cells.width();
-        let products = &mut workspace.products;
-        products.resize(4 * width, 0.0);
-        let mut row = vec![0.0; width];
-        self.for_touching(accepted, q, |cell, _, point| {
+        self.add_matrices(accepted, q, k, workspace, |cell, point| {
             sum.add(&self.contact, cell, self.force(point), &point.values, f);
-            cells.row(cell, &point.values, &mut row);
-            multiply_rows::<1>(point.weight, &[[point.stiffness]], &row, width, &mut products[..4 * width]);
-            add_tiles::<1>(&row, &products[..4 * width], width, cells.coordinates(cell).start / 4, k);
+            point.stiffness
         });
         sum.finish(&self.contact, f);
+    }
+
+    fn add_tangent_by_pressure(
+        &self,
+        accepted: &AcceptedState,
+        q: &[f64],
+        k: &mut Matrix,
+        workspace: &mut Workspace,
+    ) {
+        self.add_matrices(accepted, q, k, workspace, |_, point| point.by_pressure);
     }
 
     fn slips(&self, accepted: &AcceptedState, q: &[f64]) -> (Vec<ContactPiece>, f64) {
