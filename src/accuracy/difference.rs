@@ -21,7 +21,7 @@ pub(super) use modes::round_off;
 pub(super) use states::jumps;
 use states::states;
 pub(super) use stations::stations;
-pub(super) use strain_jumps::{StrainJump, jumps_of_modes, stiffness_jumps, strain_jumps};
+pub(super) use strain_jumps::{StrainJump, fixed_gradients, jumps_of_modes, stiffness_jumps, strain_jumps};
 
 /// Parameters of records are the same when they differ by less, relative to the last one.
 const SAME: f64 = 1e-9;

@@ -54,6 +54,10 @@ impl Solve for Modal {
         let mut watch = Watch::new(options.observer);
         let outcome = match self.about {
             About::Reference => sampler.about_reference(self.count),
+            // No equilibrium has to be found to see it.
+            About::Equilibrium if !start.system.is_symmetric() => {
+                Err(EigenError::NotSymmetric { analysis: "modal" }.into())
+            }
             About::Equilibrium => {
                 // The stiffness of a cell in which it jumps is that of its parts.
                 let about = &|model: &Model| start.with_model(model, &analysis, options.cache);

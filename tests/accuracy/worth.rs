@@ -223,6 +223,33 @@ fn strains_jump_where_what_is_imposed_begins() {
     }
 }
 
+/// A bar of unit length, stiffness and mass whose gradient is fixed at one end vibrates along itself with angular frequencies (k − ½) π:
+/// in one point it has no strain, where the strain of its modes is the largest.
+#[test]
+fn the_strain_jumps_where_the_gradient_is_fixed() {
+    let bar = "beam.bar = { start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 10, mass_per_length = 1 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y', 'gradient'] }]\n";
+    let check = |what: &str, results: &ancf::results::Results| {
+        let told = &error(results).eigenvalues;
+        for ((k, found), told) in (1..=3).zip(results.eigenvalues()).zip(told.iter().copied()) {
+            let truth = (found * TAU / ((f64::from(k) - 0.5) * PI) - 1.0).abs();
+            assert!(truth <= 2.0 * told && told <= 20.0 * truth, "{what}, {k}: {truth:.1e}, told {told:.1e}");
+        }
+    };
+    for wanted in [1e-3, 1e-4] {
+        let text = format!("{bar}analysis.modal = {{ count = 3, accuracy = {wanted:e} }}");
+        check(&format!("{wanted:e}"), &run(&scene(&text)));
+    }
+    for elements in [8, 13, 26, 52, 104] {
+        let bar =
+            bar.replace("mass_per_length", &format!("basis.ancf.elements = {elements}, mass_per_length"));
+        let scene = scene(&format!("{bar}analysis.modal.count = 3"));
+        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
+            .expect("results");
+        check(&format!("{elements} elements"), &results);
+    }
+}
+
 /// A hinged beam of unit length, stiffness and mass vibrates with angular frequencies k²π² and buckles under k²π². Of eight
 /// half waves few cells, or half as many, see so little that two meshes may happen to agree.
 #[test]

@@ -7,7 +7,7 @@
 //! proportion to h only, beside others that fall faster, so that runs on coarser meshes do not tell them.
 
 use super::{Difference, larger};
-use crate::model::{Along, Beam, Model, Place, Section};
+use crate::model::{Along, Beam, FixedRotation, Model, Place, Section};
 use crate::results::{Shape, Trajectory};
 
 /// Of Δε h.
@@ -80,7 +80,7 @@ fn places(model: &Model, beam: usize, length: f64) -> Vec<f64> {
     places
 }
 
-/// Where within a beam the strain of a mode may jump, by nobody knows how much beforehand, since modes have no size. Beams that keep their
+/// Where on a beam the strain of a mode may jump, by nobody knows how much beforehand, since modes have no size. Beams that keep their
 /// length have no strain, and what a string errs by is told by its kinks.
 pub(in crate::accuracy) fn jumps_of_modes(model: &Model, beam: usize, length: f64) -> Vec<f64> {
     let Section { axial_stiffness, bending_stiffness, .. } = &model.beams[beam].section;
@@ -90,7 +90,15 @@ pub(in crate::accuracy) fn jumps_of_modes(model: &Model, beam: usize, length: f6
     }
     // Where what is imposed ends, or the force of a tendon, the strain of the state about which they are jumps.
     let jumps = model.parts.iter().flat_map(|part| part.jumps()).filter(|at| at.beam == beam);
-    within(points(model, beam).chain(jumps.map(|at| at.s)).chain(softer), length)
+    let mut places = within(points(model, beam).chain(jumps.map(|at| at.s)).chain(softer), length);
+    places.extend(fixed_gradients(model, beam));
+    each_once(places, length)
+}
+
+/// Where supports fix the gradient of a beam, and so leave no strain in one point, which may be an end.
+pub(in crate::accuracy) fn fixed_gradients(model: &Model, beam: usize) -> impl Iterator<Item = f64> {
+    let fixed = model.supports.iter().filter(|support| support.fix.rotation == FixedRotation::Gradient);
+    fixed.map(|support| support.at).filter(move |at| at.beam == beam).map(|at| at.s)
 }
 
 /// The arc lengths at which parts, joints and supports act in a point of a beam.
@@ -115,7 +123,11 @@ pub(in crate::accuracy) fn stiffness_jumps(model: &Model, beam: usize, length: f
 
 /// Places between the ends of a beam, rising, each once.
 fn within(places: impl Iterator<Item = f64>, length: f64) -> Vec<f64> {
-    let mut places: Vec<f64> = places.filter(|s| *s > SAME * length && *s < (1.0 - SAME) * length).collect();
+    each_once(places.filter(|s| *s > SAME * length && *s < (1.0 - SAME) * length).collect(), length)
+}
+
+/// Places along a beam, rising, each once.
+fn each_once(mut places: Vec<f64>, length: f64) -> Vec<f64> {
     places.sort_by(f64::total_cmp);
     places.dedup_by(|a, b| (*a - *b).abs() <= SAME * length);
     places

@@ -2,7 +2,7 @@
 //! point, where errors of the first order are beside others that fall faster, or where all meshes err alike.
 
 use super::{Purpose, Round, Runner, coarser, short};
-use crate::accuracy::difference::{self, Difference, StrainJump, is_path};
+use crate::accuracy::difference::{self, Difference, StrainJump, fixed_gradients, is_path};
 use crate::accuracy::mesh::Mesh;
 use crate::accuracy::setting::{Family, Setting, Solver};
 use crate::basis::Basis;
@@ -217,6 +217,13 @@ impl Runner<'_, '_> {
 
     /// What is to be done about a strain that jumps.
     fn jump_at(&self, beam: usize, s: f64) -> String {
+        if fixed_gradients(self.model, beam).any(|at| at == s) {
+            return format!(
+                "the support at s = {} m of beam `{}` fixes the gradient, and leaves no strain in that one point: fix the `angle` instead",
+                plain(s, 6),
+                self.model.beams[beam].name
+            );
+        }
         format!(
             "the strain of beam `{}` jumps at s = {} m, which one beam cannot follow: cut it there (two beams in a `weld` have a strain each)",
             self.model.beams[beam].name,
