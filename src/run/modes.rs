@@ -206,8 +206,8 @@ impl Sampler<'_> {
         unloaded.run.statistics.factorizations = modes.factorizations;
         if modes.load_factors.is_empty() {
             unloaded.run.warnings.push(
-                "no load factor makes the structure buckle: the loads compress nothing, unless they are turned round (negative factors are \
-                 not sought)"
+                "no load factor makes the structure buckle: the loads press on nothing that could give way (a tendon goes along with its beam), \
+                 unless they are turned round (negative factors are not sought)"
                     .into(),
             );
         }

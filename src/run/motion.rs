@@ -8,12 +8,14 @@ use crate::restart::{self, SavedState};
 use crate::results::{RecordedState, RecordedStates, Statistics, TakenUp, Trajectory};
 use crate::solve::dynamics::{self, Checkpoint, State, start};
 use crate::solve::resume::Holding;
-use crate::system::System;
+use crate::system::{Energy, System};
 use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Kinetic energies that differ by less, relative to the larger one, are the same.
 const SAME_ENERGY: f64 = 1e-6;
+/// Part of the largest energy of the beams in a motion, above which that of contacts at its start is said.
+const THROWN: f64 = 0.01;
 
 impl Solve for Dynamic {
     type Results = Trajectory;
@@ -91,6 +93,10 @@ impl Solve for Dynamic {
             }
             trajectory.states = kept.filter(|_| options.states);
             trajectory.run.warnings.extend(brought);
+            if options.start.is_none() {
+                let thrown = thrown_out(&system, task.start.reached(), &trajectory.energy);
+                trajectory.run.warnings.extend(thrown);
+            }
             trajectory.run.settings.extend(told.map(|told| ("continued".into(), told)));
         }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)
@@ -164,18 +170,39 @@ fn brought(system: &System, state: &State, before: f64) -> Option<String> {
     })
 }
 
+/// The energy \[J\] with which contacts begin, of those parts that are `asked` for, and the first beam of which they have one.
+fn within_obstacles(system: &System, q: &[f64], asked: impl Fn(usize) -> bool) -> Option<(f64, usize)> {
+    let contacts = system.contact_energies(q).filter(|(part, _, energy)| asked(*part) && *energy > 0.0);
+    let contacts: Vec<(usize, f64)> = contacts.map(|(_, beam, energy)| (beam, energy)).collect();
+    Some((contacts.iter().map(|(_, energy)| energy).sum(), contacts.first()?.0))
+}
+
 /// A warning where contacts with obstacles that did not stand in the saved state begin deep within these.
 fn pressed(system: &System, state: &State, stands: impl Fn(usize) -> bool) -> Option<String> {
-    let of_new = system.contact_energies(&state.q).filter(|(part, ..)| !stands(*part));
-    let pressed: Vec<(usize, f64)> =
-        of_new.map(|(_, beam, energy)| (beam, energy)).filter(|(_, energy)| *energy > 0.0).collect();
-    let energy: f64 = pressed.iter().map(|(_, energy)| energy).sum();
-    let beam = system.beams().get(pressed.first()?.0)?;
+    let (energy, beam) = within_obstacles(system, &state.q, |part| !stands(part))?;
+    let beam = system.beams().get(beam)?;
     let kinetic = system.energy(state.time, &state.q, Some(&state.v)).kinetic;
     (energy > SAME_ENERGY * kinetic).then(|| {
         format!(
             "an obstacle that comes has beam `{}` within it already: its contact begins with {energy:.6e} J, which nothing put in, and throws the \
              beam out; let it come in a static stage, in which contacts grow, or where the beam is not",
+            beam.name
+        )
+    })
+}
+
+/// A warning where contacts in which a motion begins let go most of their energy, and that is a part of what moves that matters. What
+/// lies as deep as its weight presses it keeps that energy.
+fn thrown_out(system: &System, start: &State, energies: &[Energy]) -> Option<String> {
+    let (energy, beam) = within_obstacles(system, &start.q, |_| true)?;
+    let beam = system.beams().get(beam)?;
+    let of_beams = energies.iter().map(|energy| energy.kinetic + energy.stretch + energy.bend);
+    let stored = || energies.iter().map(|energy| energy.stored);
+    let let_go = stored().next()? - stored().fold(f64::INFINITY, f64::min);
+    (energy > THROWN * of_beams.fold(0.0, f64::max) && let_go > 0.5 * energy).then(|| {
+        format!(
+            "beam `{}` begins within an obstacle, and its contact with {energy:.6e} J, which nothing put in and which throws the beam out: begin beside \
+             the obstacle, or with a static stage before, in which the beam comes to rest on it",
             beam.name
         )
     })
