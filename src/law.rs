@@ -189,7 +189,7 @@ fn merged(times: impl Iterator<Item = f64>) -> Vec<f64> {
     times
 }
 
-/// Those of `times`, rising, that have another one no farther than `near`; without a bound all.
+/// Those of `times`, rising, that have another one no farther than `near`; all where that is infinite.
 fn with_neighbours(times: &[f64], near: f64) -> Vec<f64> {
     let after = |i: usize| times.get(i + 1).map_or(f64::INFINITY, |next| next - times[i]);
     let before = |i: usize| i.checked_sub(1).map_or(f64::INFINITY, after);

@@ -77,6 +77,8 @@ impl Solve for Dynamic {
             let states = states.map(|(state, forces)| RecordedState::Moving { state, forces });
             RecordedStates { states: states.collect(), taken_up }
         });
+        let begins = options.start.is_none().then(|| task.start.reached());
+        let thrown = begins.and_then(|start| thrown_out(&system, start, &solution.states));
         let mut outcome = match solution.stuck.clone() {
             None => Ok(sampler.dynamics(self, solution)),
             Some(stuck) => Err(sampler.lost(self, &stuck, solution)),
@@ -93,10 +95,7 @@ impl Solve for Dynamic {
             }
             trajectory.states = kept.filter(|_| options.states);
             trajectory.run.warnings.extend(brought);
-            if options.start.is_none() {
-                let thrown = thrown_out(&system, task.start.reached(), &trajectory.energy);
-                trajectory.run.warnings.extend(thrown);
-            }
+            trajectory.run.warnings.extend(thrown);
             trajectory.run.settings.extend(told.map(|told| ("continued".into(), told)));
         }
         timed(outcome, |trajectory| trajectory, &watch, stopwatch)
@@ -191,15 +190,19 @@ fn pressed(system: &System, state: &State, stands: impl Fn(usize) -> bool) -> Op
     })
 }
 
-/// A warning where contacts in which a motion begins let go most of their energy, and that is a part of what moves that matters. What
-/// lies as deep as its weight presses it keeps that energy.
-fn thrown_out(system: &System, start: &State, energies: &[Energy]) -> Option<String> {
+/// A warning where contacts in which a motion begins let go most of their energy, and that is a part of what moves in its recorded
+/// `states` that matters. What lies as deep as its weight presses it keeps that energy.
+fn thrown_out(system: &System, start: &State, states: &[State]) -> Option<String> {
     let (energy, beam) = within_obstacles(system, &start.q, |_| true)?;
     let beam = system.beams().get(beam)?;
-    let of_beams = energies.iter().map(|energy| energy.kinetic + energy.stretch + energy.bend);
-    let stored = || energies.iter().map(|energy| energy.stored);
-    let let_go = stored().next()? - stored().fold(f64::INFINITY, f64::min);
-    (energy > THROWN * of_beams.fold(0.0, f64::max) && let_go > 0.5 * energy).then(|| {
+    let left = |state: &State| within_obstacles(system, &state.q, |_| true).map_or(0.0, |(energy, _)| energy);
+    let of_beams = |state: &State| {
+        let Energy { kinetic, stretch, bend, .. } = system.energy(state.time, &state.q, Some(&state.v));
+        kinetic + stretch + bend
+    };
+    let keeps = states.iter().map(left).fold(energy, f64::min) > 0.5 * energy;
+    let least = THROWN * states.iter().map(of_beams).fold(0.0, f64::max);
+    (!keeps && energy > least.max(system.round_off() * system.length())).then(|| {
         format!(
             "beam `{}` begins within an obstacle, and its contact with {energy:.6e} J, which nothing put in and which throws the beam out: begin beside \
              the obstacle, or with a static stage before, in which the beam comes to rest on it",

@@ -215,15 +215,20 @@ fn a_bounce_gives_twice_the_momentum() {
 /// as its weight presses it, or above, is not.
 #[test]
 fn a_motion_that_begins_within_an_obstacle_says_so() {
-    let warned = |height: f64| {
+    let warned = |height: f64, springs: &str| {
         let text = format!(
             "beam.rod = {{ start = [0, {height:?}], end = [0.4, {height:?}], axial_stiffness = 1e5, bending_stiffness = 1e3, \
              mass_per_length = 1, basis.ancf.elements = 2 }}
              effect.gravity.acceleration = [0, -10]
              effect.contact = [{{ beam = 'rod', stiffness = 1e4, half_plane = {{ point = [0, 0], normal = [0, 1] }} }}]
+             {springs}
              analysis.dynamic = {{ duration = 0.3, output_every = 0.01, radau.tolerance = 1e-6 }}\n"
         );
         Written::of(&text).summary()["warnings"].to_string().contains("begins within an obstacle")
     };
-    assert_eq!([-0.1, -1e-3, 0.0, 0.1].map(warned), [true, false, false, false]);
+    assert_eq!([-0.1, -1e-3, 0.0, 0.1].map(|height| warned(height, "")), [true, false, false, false]);
+    // What springs take up is no energy of the contact.
+    let spring =
+        "effect.spring = [{ beam = 'rod', at = 0.2, anchor = [0.2, -0.1], stiffness = 2e3, length = 0 }]";
+    assert!(warned(-0.1, spring));
 }

@@ -517,7 +517,7 @@ fn in_two_files(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     if stages::ends_shape_functions(&first, &rest) {
         return Verdict::NotApplicable;
     }
-    let inner = |scene: &Table| -> usize {
+    let tendons_and_actuations = |scene: &Table| -> usize {
         ["tendon", "actuation"].map(|kind| settings::items(scene, &["effect", kind]).count()).iter().sum()
     };
     let half = match other(&first, frame, way) {
@@ -540,7 +540,9 @@ fn in_two_files(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
         // Stages let a tendon or an actuation go as it is. A state does not know of it: the forces that it
         // has left keep their directions as they fade, and a state that needs it to be stable has no other
         // way.
-        Outcome::Failed(_) | Outcome::Refused(_) if inner(&first) > inner(&rest) => {
+        Outcome::Failed(_) | Outcome::Refused(_)
+            if tendons_and_actuations(&first) > tendons_and_actuations(&rest) =>
+        {
             return Verdict::NotApplicable;
         }
         Outcome::Failed(said) | Outcome::Refused(said) => {
