@@ -143,6 +143,26 @@ struct FactoredTangent {
     rate: f64,
 }
 
+impl FactoredTangent {
+    /// The real part of (ζ²/h² M + K)⁻¹ `factor` e for the ζ of a block, in the supports' frames, with the tangent turned.
+    fn solve_turned(&self, block: usize, turns: &Turns, factor: Complex<f64>, e: &mut [f64]) {
+        let n = self.at.q.len();
+        turns.back(&mut e[..n]);
+        match &self.factors[block] {
+            BlockFactor::Real(matrix) => {
+                matrix.solve(e);
+                e.iter_mut().for_each(|e| *e *= factor.re);
+            }
+            BlockFactor::Complex(matrix) => {
+                let mut imaginary: Vec<f64> = e.iter().map(|e| factor.im * e).collect();
+                e.iter_mut().for_each(|e| *e *= factor.re);
+                matrix.solve(e, &mut imaginary);
+            }
+        }
+        turns.forth(&mut e[..n]);
+    }
+}
+
 /// When the tangent of a step was taken.
 #[derive(Clone, Copy, PartialEq)]
 enum TangentAge {
@@ -467,21 +487,7 @@ impl<'a> Collocation<'a> {
     /// The real part of (ζ²/h² M + K)⁻¹ `factor` e, in the supports' frames, with the tangent
     /// turned as `self.turns` says.
     fn solve_turned(&self, factor: Complex<f64>, e: &mut [f64]) {
-        let n = self.motion.coordinates();
-        self.turns.back(&mut e[..n]);
-        let FactoredTangent { factors, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
-        match &factors[self.leading_block()] {
-            BlockFactor::Real(matrix) => {
-                matrix.solve(e);
-                e.iter_mut().for_each(|e| *e *= factor.re);
-            }
-            BlockFactor::Complex(matrix) => {
-                let mut imaginary: Vec<f64> = e.iter().map(|e| factor.im * e).collect();
-                e.iter_mut().for_each(|e| *e *= factor.re);
-                matrix.solve(e, &mut imaginary);
-            }
-        }
-        self.turns.forth(&mut e[..n]);
+        self.kept.as_ref().expect(NOT_FACTORISED).solve_turned(self.leading_block(), &self.turns, factor, e);
     }
 
     /// (ζ²/h² M + K)⁻¹ e in the state `state`, from the supports' frames into fixed axes; returns
@@ -686,8 +692,12 @@ impl Method for Collocation<'_> {
         if may_not_see_loads(self.control, h) {
             unseen += self.make_up(state, from, to);
         }
+        self.turn_to(to);
         self.motion.carry(to);
-        self.motion.project(to)?;
+        let block = self.leading_block();
+        let Self { motion, kept, turns, .. } = self;
+        let kept = kept.as_ref().expect(NOT_FACTORISED);
+        motion.project(to, h, |change| kept.solve_turned(block, turns, Complex::new(1.0, 0.0), change))?;
         let Some(_) = allowed else { return Ok(0.0) };
         Ok(self.error(from, h) + unseen)
     }

@@ -492,7 +492,13 @@ impl Method for GeneralizedAlpha<'_> {
         to.time = end;
         let unseen = if may_not_see_loads(self.control, h) { self.make_up(state, to, c) } else { 0.0 };
         self.motion.carry(to);
-        self.motion.project(to)?;
+        let Self { motion, factor, turns, .. } = self;
+        let factor = factor.as_ref().expect(NOT_FACTORISED);
+        motion.project(to, h, |change| {
+            turns.back(&mut change[..n]);
+            factor.solve(change);
+            turns.forth(&mut change[..n]);
+        })?;
         Ok(if allowed.is_some() { self.error(h, c) + unseen } else { 0.0 })
     }
 
