@@ -1,5 +1,6 @@
 //! By how much two runs of a model differ: where along the beams, when, and in which cells.
 
+mod bent;
 mod kinks;
 mod laid_out;
 mod modes;
@@ -14,6 +15,7 @@ use super::mesh::{CellErrors, Mesh};
 use crate::model::{Analysis, Model};
 use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Results};
 
+pub(super) use bent::{bent, defects};
 pub(super) use kinks::kink;
 pub(super) use laid_out::laid_out;
 use modes::modes;

@@ -467,8 +467,9 @@ impl<'a, 'o> Runner<'a, 'o> {
                 jumps.extend(places.into_iter().filter(|jump| self.is_open(jump.beam)));
             }
         }
-        if let (Ok(difference), Results::Trajectory(_)) = (&difference, &results) {
+        if let (Ok(difference), Results::Trajectory(run)) = (&difference, &results) {
             unseen = both(unseen, difference::laid_out(self.model, difference));
+            unseen = both(unseen, difference::bent(self.model, run, difference));
         }
         let fall = before
             .zip(difference.as_ref().ok())

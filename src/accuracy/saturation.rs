@@ -7,6 +7,7 @@
 //! reproduce cubic polynomials, have to be asked. So they have where half as many nodes are so few that most shape
 //! functions reach to an end ([`ends_prevail`]).
 
+use super::difference::defects;
 use crate::basis::Basis;
 use crate::model::{Discretization, Nodes};
 
@@ -35,20 +36,12 @@ pub(super) fn ends_prevail(discretization: &Discretization, cells: usize) -> boo
     matches!(discretization, Discretization::Rpim { neighbours, .. } if cells <= 2 * (2 * neighbours + 1))
 }
 
-/// The largest error of x'' where the nodal values are those of x = s²/2, whose x'' is 1; `None` where
-/// there are no such shape functions.
+/// The largest part by which a constant curvature is wrong within cells; `None` where there are no such shape functions.
 fn defect(discretization: &Discretization, length: f64) -> Option<f64> {
     let basis = Basis::new(discretization, length).ok()?;
-    let q: Vec<f64> = basis.nodes().iter().flat_map(|s| [0.5 * s * s, 0.0, *s, 0.0]).collect();
     let inside = |cell: &[f64]| PLACES.map(|part| cell[0] + part * (cell[1] - cell[0]));
     let places: Vec<f64> = basis.nodes().windows(2).flat_map(inside).collect();
-    let table = basis.points(&places, &[2]).ok()?;
-    let errors = table.cells.iter().map(|cell| {
-        let (_, row) = table.block(*cell);
-        let values = q[2 * cell.first as usize..].iter().step_by(2);
-        (row.iter().zip(values).map(|(n, x)| n * x).sum::<f64>() - 1.0).abs()
-    });
-    Some(errors.fold(0.0, f64::max))
+    Some(defects(&basis, &places)?.into_iter().fold(0.0, f64::max))
 }
 
 #[cfg(test)]

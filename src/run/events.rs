@@ -3,13 +3,15 @@
 use super::RunError;
 use super::sampler::{ProbePoint, Sampler};
 use crate::assembly::Side;
-use crate::model::{Dynamic, EventCondition, ProbeQuantity};
+use crate::model::{Discretization, Dynamic, EventCondition, ProbeQuantity};
 use crate::results::{ProbeSeries, Shape, Trajectory};
 use crate::solve::dynamics::{self, Observed};
 use crate::system::{View, unfold};
 
-/// Round-offs of single positions that may add up in a quantity.
+/// Round-offs of single positions that may add up in a quantity of elements …
 const ROUND_OFFS: f64 = 4.0;
+/// … and of meshfree shape functions, of which more nodes take part in a place.
+const ROUND_OFFS_OF_MESHFREE: f64 = 16.0;
 /// Heights of bends below this are round-off \[beam lengths\].
 const STILL: f64 = 1e-9;
 /// What a probe at rest is moved by round-off at most \[beam lengths\].
@@ -73,7 +75,11 @@ impl Sampler<'_> {
         let h = basis.nodes().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let [stretching, bending] = [&section.axial_stiffness, &section.bending_stiffness]
             .map(|along| along.as_ref().map_or(0.0, |along| along.bounds(length)[1]));
-        let unit = ROUND_OFFS * f64::EPSILON * length / h;
+        let times = match self.model.beams[*beam].discretization {
+            Discretization::Rpim { .. } => ROUND_OFFS_OF_MESHFREE,
+            _ => ROUND_OFFS,
+        };
+        let unit = times * f64::EPSILON * length / h;
         let bend = STILL / length;
         let bent = unit * 12.0 * bending / (h * h);
         // The force in a beam that keeps its length balances those across its neighbours.

@@ -153,7 +153,13 @@ fn beginning(
         false if saved.is_equilibrium() => "from a static equilibrium",
         false => "from its positions and velocities alone, for the model or the integrator is another",
     };
-    let told = format!("for {} s from t = {begin} s to {end} s, {how}", settings.duration);
+    let idle = !model.initial_velocities.is_empty() && (same || !saved.is_equilibrium());
+    let idle = if idle {
+        "; `initial_velocity` belongs to the start of a motion, and adds nothing to one that is under way"
+    } else {
+        ""
+    };
+    let told = format!("for {} s from t = {begin} s to {end} s, {how}{idle}", settings.duration);
     Ok(Beginning { start, end, motion, told: Some(told), brought })
 }
 

@@ -285,3 +285,59 @@ fn the_strain_errs_by_its_jump_where_it_jumps() {
     let off = found.abs().max((found - 3e-3).abs());
     assert!(off <= 3.0 * told && told < 1e-2, "{found:e} for 0 and 3e-3, {told:e} told");
 }
+
+/// A bar of 1 m on ten cells, of which the strain jumps in the middle: where its stiffness is doubled under 10 N, where it begins to heat
+/// up by 1e-3, and at a hook that takes the 10 N. Its strain is known, and the error that is told beside the middle is that of half
+/// the jump, wherever the probe is.
+#[test]
+fn the_strain_errs_beside_where_it_jumps() {
+    let pull = "effect.force = [{ beam = 'b', at = 'end', value = [10, 0] }]\n";
+    let hook = "support = [{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'b', at = 0.5, fix = ['x'] }]\n";
+    let clamp = "support = [{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }]\n";
+    let heat = "effect.actuation = [{ beam = 'b', strain = 1e-3, from = 0.5 }]\n";
+    for (stiffness, more, before, behind) in [
+        ("{ pieces = { until = [0.5], value = [1e4, 2e4] } }", [clamp, pull], 1e-3, 5e-4),
+        ("1e4", [clamp, heat], 0.0, 1e-3),
+        ("1e4", [hook, pull], 0.0, 1e-3),
+    ] {
+        for basis in ["ancf.elements = 10", "rpim.nodes = 11"] {
+            let text = format!(
+                "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = {stiffness}, bending_stiffness = 1, basis.{basis} }}\n{}{}\
+                 probe = [{{ name = 'p', beam = 'b', at = 0.499 }}, {{ name = 'q', beam = 'b', at = 0.5001 }}]\nanalysis.static = {{}}\n",
+                more[0], more[1]
+            );
+            let scene = scene(&text);
+            let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
+                .expect("one");
+            let states = results.states();
+            for (number, exact) in [before, behind].into_iter().enumerate() {
+                let found = states.probes[number].samples.last().expect("a state").strain;
+                let told = error(&results).probes[number].samples.last().expect("a state").strain;
+                let truth = (found - exact).abs();
+                assert!(
+                    truth <= 3.0 * told && told <= 5.0 * truth,
+                    "{more:?} {basis}: {truth:e}, {told:e} told"
+                );
+            }
+        }
+    }
+}
+
+/// A cantilever under a small load q, of 25 meshfree nodes, which at its clamp miss a constant curvature by a part that finer meshes do
+/// not make smaller. The curvature there is q L²/(2 EI).
+#[test]
+fn the_curvature_of_meshfree_beams_errs_at_their_ends() {
+    for nodes in [25, 40] {
+        let scene = scene(&format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.rpim.nodes = {nodes} }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+             effect.distributed_force = [{{ beam = 'b', value = [0, -2e-3] }}]\n\
+             probe = [{{ name = 'p', beam = 'b', at = 'start' }}]\nanalysis.static = {{}}\n"
+        ));
+        let results =
+            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let truth = (last(&results).curvature + 1e-3).abs();
+        let told = error(&results).probes[0].samples.last().expect("a state").curvature;
+        assert!(truth <= 3.0 * told && told <= 5.0 * truth, "{nodes}: {truth:e}, {told:e} told");
+    }
+}

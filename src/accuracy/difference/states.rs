@@ -3,7 +3,7 @@
 use super::places::{interpolated, is_before, is_twice, same_place};
 use super::section_forces::section_forces;
 use super::stations::parts;
-use super::strain_jumps::strain_jump;
+use super::strain_jumps::{OF_CURVATURE, strain_jump};
 use super::{Difference, Scales, larger, pairs};
 use crate::accuracy::mesh::{CellErrors, Mesh};
 use crate::model::{Analysis, Beam, Discretization, Model, Place, Section};
@@ -15,8 +15,6 @@ const NO_STRAIN: f64 = 1e-13;
 /// Curvatures smaller than this per beam length are round-off.
 const STRAIGHT: f64 = 1e-9;
 
-/// A tangent r' that is too long by a small part makes the curvature r' × r''/|r'|² wrong by at most so many times that part.
-const OF_CURVATURE: f64 = 2.0;
 /// An axial force that differs on both sides of a place by more than this part of the largest, or of M/L, jumps there; so does a bending
 /// moment, by this part of the largest.
 const JUMP: f64 = 1e-6;
@@ -72,9 +70,6 @@ pub fn states<'t>(
                 let bends = bends(model, &fine.last, probe.at);
                 samples[j] = one_sided(samples[j], b, around, probe.at.s, (section, bends));
             }
-            let beside = beside_jump(model, &fine.last, &meshes[probe.at.beam], probe.at);
-            samples[j].strain = larger(samples[j].strain, beside);
-            samples[j].curvature = larger(samples[j].curvature, OF_CURVATURE * beside * b.curvature.abs());
             let error = samples[j].x / lengths[probe.at.beam];
             difference.records[j] = larger(difference.records[j], error);
             result = larger(result, error);
@@ -331,25 +326,6 @@ fn step(shape: &Shape, values: &[f64], s: f64) -> f64 {
         [least.min(*value), most.max(*value)]
     });
     most - least
-}
-
-/// What the strain errs by in the cells beside a place where it jumps by Δε: Δε/2 there, and nothing at their other ends. 0 where the
-/// nearest one is farther away, or where it is itself such a place.
-fn beside_jump(model: &Model, last: &[Shape], mesh: &Mesh, at: Place) -> f64 {
-    let Some((beam, shape)) = model.beams.get(at.beam).zip(last.get(at.beam)) else { return 0.0 };
-    let Some(axial) = &beam.section.axial_stiffness else { return 0.0 };
-    let places = model.parts.iter().filter_map(|part| part.point()).filter(|place| place.beam == at.beam);
-    let of = |place: Place| {
-        let force = |after: bool| interpolated(&shape.s, &shape.axial_force, place.s, after);
-        let jump = force(false).zip(force(true)).map_or(0.0, |(before, behind)| (behind - before).abs());
-        let away = (at.s - place.s).abs();
-        // The cells of the finer run are half as long.
-        let ends = &mesh.nodes[mesh.cell_at(0.5 * (at.s + place.s))..];
-        let cell = 0.5 * (ends[1] - ends[0]);
-        let near = away > same_place(&shape.s) && away < cell;
-        if near { 0.5 * jump / axial.at(place.s, at.s) * (1.0 - away / cell) } else { 0.0 }
-    };
-    places.map(of).fold(0.0, larger)
 }
 
 /// What a probe at such a place errs by: at least by what its strain, or the direction of a string, is off from those at the stations

@@ -1,10 +1,11 @@
-//! Errors of positions beside places where the strain of a beam jumps.
+//! Errors beside places where the strain of a beam jumps.
 //!
 //! Shape functions with continuous tangents have one strain where two cells meet. If the strain jumps there by Δε, as where a force
 //! pulls along the beam, elements of the lengths h on both sides move the place by Δε h/12 along the
 //! beam, and no others: the cubics that come nearest to a corner in energy do. Where the section couples stretch and bending by
 //! a stiffness EB that jumps, the strain that is wrong on one side bends the beam by ΔEB/EI times as much. These errors fall in
-//! proportion to h only, beside others that fall faster, so that runs on coarser meshes do not tell them.
+//! proportion to h only, beside others that fall faster, so that runs on coarser meshes do not tell them. The strain itself is wrong by
+//! Δε/2 beside the place, and right at the other ends of both elements.
 
 use super::{Difference, larger};
 use crate::model::{Along, Beam, FixedRotation, Model, Place, Section};
@@ -12,6 +13,10 @@ use crate::results::{Shape, Trajectory};
 
 /// Of Δε h.
 const OF_JUMP: f64 = 1.0 / 12.0;
+/// Of Δε, what the strain beside the place is wrong by.
+const OF_STRAIN: f64 = 0.5;
+/// A tangent r' that is too long by a small part makes the curvature r' × r''/|r'|² wrong by at most so many times that part.
+pub(super) const OF_CURVATURE: f64 = 2.0;
 /// Places that are nearer to each other are one, in lengths of a beam.
 const SAME: f64 = 1e-9;
 /// Strains below this are round-off.
@@ -36,17 +41,36 @@ pub(in crate::accuracy) fn strain_jumps(
     run: &Trajectory,
     difference: &Difference,
 ) -> Option<(Difference, Vec<StrainJump>)> {
-    let (mut sum, mut jumps) = (difference.none(), Vec::new());
+    let (mut sum, mut jumps, mut any) = (difference.none(), Vec::new(), false);
     for (index, ((beam, nodes), shape)) in model.beams.iter().zip(nodes).zip(&run.last).enumerate() {
         let length = nodes.last().copied().unwrap_or(0.0);
-        for s in places(model, index, length) {
+        let softer = stiffness_jumps(model, index, length);
+        for s in within(points(model, index).chain(model.breaks(index)), length) {
             let [along, turn] = at(model, beam, index, shape, (s, length));
             if along.is_nan() || along <= ROUND_OFF {
                 continue;
             }
+            any = true;
             let behind = nodes.partition_point(|node| *node <= s + SAME * length).clamp(1, nodes.len() - 1);
             let before = nodes.partition_point(|node| *node < s - SAME * length).max(1) - 1;
-            let cell = (nodes[behind] - s).max(s - nodes[before]);
+            let cells = [s - nodes[before], nodes[behind] - s];
+            for ((probe, errors), seen) in model.probes.iter().zip(&mut sum.probes).zip(&run.probes) {
+                let away = probe.at.s - s;
+                let part = 1.0 - away.abs() / cells[usize::from(away > 0.0)];
+                if probe.at.beam != index || away.abs() <= SAME * length || part <= 0.0 {
+                    continue;
+                }
+                let strain = OF_STRAIN * along * part;
+                for (error, seen) in errors.samples.iter_mut().zip(&seen.samples) {
+                    error.strain = larger(error.strain, strain);
+                    error.curvature = larger(error.curvature, OF_CURVATURE * strain * seen.curvature.abs());
+                }
+            }
+            // What positions err by where a stiffness jumps is told by other runs.
+            if softer.iter().any(|other| (s - other).abs() <= SAME * length) {
+                continue;
+            }
+            let cell = cells[0].max(cells[1]);
             let (moved, turned) = (OF_JUMP * cell * along, OF_JUMP * cell * turn);
             let result = (moved + turned * length) / length;
             jumps.push(StrainJump { beam: index, s, error: result });
@@ -69,15 +93,7 @@ pub(in crate::accuracy) fn strain_jumps(
             }
         }
     }
-    (!jumps.is_empty()).then_some((sum, jumps))
-}
-
-/// Where within a beam the strain may jump, but for [`stiffness_jumps`].
-fn places(model: &Model, beam: usize, length: f64) -> Vec<f64> {
-    let mut places = within(points(model, beam).chain(model.breaks(beam)), length);
-    let softer = stiffness_jumps(model, beam, length);
-    places.retain(|s| softer.iter().all(|other| (s - other).abs() > SAME * length));
-    places
+    any.then_some((sum, jumps))
 }
 
 /// Where on a beam the strain of a mode may jump, by nobody knows how much beforehand, since modes have no size. Beams that keep their
@@ -133,8 +149,9 @@ fn each_once(mut places: Vec<f64>, length: f64) -> Vec<f64> {
     places
 }
 
-/// By how much the strain jumps at a place of a beam in its last shape; 0 at its ends, and for round-off.
-pub(in crate::accuracy) fn strain_jump(model: &Model, place: Place, shape: &Shape) -> f64 {
+/// By how much the strain jumps at a place of a beam in its last shape where the section or what is imposed jumps; 0 at the ends of the
+/// beam, and for round-off.
+pub(super) fn strain_jump(model: &Model, place: Place, shape: &Shape) -> f64 {
     let length = shape.s.last().copied().unwrap_or(0.0);
     let is_break = within(model.breaks(place.beam).into_iter(), length)
         .iter()

@@ -145,6 +145,12 @@ pub enum StartError {
     Singular(#[from] Singular),
 }
 
+/// The angle \[rad\] between two gradients, whose coordinates begin at `i`.
+fn turn(imposed: &[f64], q: &[f64], i: usize) -> f64 {
+    let ([a, b], [x, y]) = ([imposed[i], imposed[i + 1]], [q[i], q[i + 1]]);
+    (a * y - b * x).atan2(a * x + b * y).abs()
+}
+
 /// The largest of a vector of coordinates, those of positions in beam lengths: its place and size.
 fn largest(system: &System, of: impl Fn(usize) -> f64) -> (usize, f64) {
     let unit = |i: usize| if i % 4 < 2 { system.length() } else { 1.0 };
@@ -194,7 +200,11 @@ pub fn from_state(
     system.supports().impose(state.time, &mut imposed);
     let (at, change) = largest(system, |i| imposed[i] - state.q[i]);
     if change > ROUND_OFF {
-        return Err(jump(system, at, state.time, (imposed[at] - state.q[at]).abs()));
+        let change = match at % 4 {
+            0 | 1 => (imposed[at] - state.q[at]).abs(),
+            _ => turn(&imposed, &state.q, 4 * (at / 4) + 2).max(change),
+        };
+        return Err(jump(system, at, state.time, change));
     }
     if let Some((beam, excess)) = system.missed_length(state.time, &state.q)
         && excess.abs() > JOINED * system.length()
