@@ -194,7 +194,9 @@ impl<'a, 'o> Search<'a, 'o> {
             } else if stalls >= STALLS && self.runner.open.load_steps {
                 Some(STICKS.to_owned())
             } else if stalls >= STALLS {
-                Some(self.runner.kink_at().unwrap_or_else(|| SEVERAL.to_owned()))
+                let jump = || self.runner.largest_jump(&judged.round.jumps);
+                let jump = if errors.result <= wanted.result { jump() } else { None };
+                Some(self.runner.kink_at().or(jump).unwrap_or_else(|| SEVERAL.to_owned()))
             } else if let Some(growth) = self.outgrown(&judged, wanted).filter(|_| rounds >= GROWN) {
                 Some(growth)
             } else if rounds >= ROUNDS {

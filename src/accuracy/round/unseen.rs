@@ -215,6 +215,12 @@ impl Runner<'_, '_> {
         Ok(any)
     }
 
+    /// What is to be done about the largest of some jumps.
+    pub fn largest_jump(&self, jumps: &[StrainJump]) -> Option<String> {
+        let largest = jumps.iter().max_by(|a, b| a.error.total_cmp(&b.error))?;
+        Some(self.jump_at(largest.beam, largest.s))
+    }
+
     /// What is to be done about a strain that jumps.
     fn jump_at(&self, beam: usize, s: f64) -> String {
         if fixed_gradients(self.model, beam).any(|at| at == s) {

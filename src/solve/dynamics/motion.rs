@@ -60,7 +60,7 @@ const SHRINKS: f64 = 0.5;
 /// … down to the round-off of what is left, in beam lengths, …
 const ROUND_OFF: f64 = 1e-11;
 /// … and none follows that would be smaller than this.
-const NEGLIGIBLE: f64 = 1e-15;
+const NEGLIGIBLE: f64 = 1e-13;
 
 /// What is moved onto the constraints.
 #[derive(Clone, Copy)]
