@@ -85,7 +85,7 @@
 use super::State;
 use super::memory::{CollocationMemory, Memory, TangentMemory};
 use super::method::{Allowed, Method, may_not_see_loads};
-use super::motion::{Acceleration, Motion, Rates, StageState};
+use super::motion::{Acceleration, Motion, Rates, StageState, StepMatrix};
 use super::stages::{self, Mixture, Stages};
 use super::tableau::{Block, Tableau};
 use super::turns::Turns;
@@ -627,6 +627,10 @@ impl Method for Collocation<'_> {
         LEAST_GROWTH
     }
 
+    fn vibrates(&self) -> bool {
+        self.motion.vibrates
+    }
+
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
         // The accelerations count as constant until there is a step to continue.
         let mut acceleration = vec![0.0; state.q.len()];
@@ -694,10 +698,11 @@ impl Method for Collocation<'_> {
         }
         self.turn_to(to);
         self.motion.carry(to);
-        let block = self.leading_block();
+        let (block, inertia) = (self.leading_block(), self.eigenvalue().norm_sqr() / (h * h));
         let Self { motion, kept, turns, .. } = self;
         let kept = kept.as_ref().expect(NOT_FACTORISED);
-        motion.project(to, h, |change| kept.solve_turned(block, turns, Complex::new(1.0, 0.0), change))?;
+        let solve = |change: &mut [f64]| kept.solve_turned(block, turns, Complex::new(1.0, 0.0), change);
+        motion.project(to, &StepMatrix { inertia, step: h, solve })?;
         let Some(_) = allowed else { return Ok(0.0) };
         Ok(self.error(from, h) + unseen)
     }

@@ -137,10 +137,11 @@ impl<'a> Driver<'_, 'a> {
     }
 
     /// Whether states between the ends of steps are moved into balance: where forces are wanted,
-    /// and with moving supports, whose energy balance would suffer from the strain error of an
-    /// interpolated state.
+    /// with moving supports, whose energy balance would suffer from the strain error of an
+    /// interpolated state, and where steps are much too long for vibrations of the mesh, which
+    /// would bend that state.
     pub(super) fn settles(&self) -> bool {
-        self.task.reactions || self.system.works_by_constraints()
+        self.task.reactions || self.system.works_by_constraints() || self.method.vibrates()
     }
 
     /// Keeps what all forces in a record follow from.

@@ -34,7 +34,7 @@
 use super::State;
 use super::memory::{GeneralizedAlphaMemory, Memory, TangentMemory};
 use super::method::{Allowed, Method, may_not_see_loads};
-use super::motion::{Acceleration, Motion, Rates, StageState};
+use super::motion::{Acceleration, Motion, Rates, StageState, StepMatrix};
 use super::turns::Turns;
 use crate::assembly::Earlier;
 use crate::lanes::Lanes;
@@ -386,6 +386,10 @@ impl Method for GeneralizedAlpha<'_> {
         2.0
     }
 
+    fn vibrates(&self) -> bool {
+        self.motion.vibrates
+    }
+
     fn start(&mut self, state: &State) -> Result<Vec<f64>, Singular> {
         self.motion.set_accepted(state);
         let unknowns = self.motion.unknowns_of(state);
@@ -494,11 +498,12 @@ impl Method for GeneralizedAlpha<'_> {
         self.motion.carry(to);
         let Self { motion, factor, turns, .. } = self;
         let factor = factor.as_ref().expect(NOT_FACTORISED);
-        motion.project(to, h, |change| {
+        let solve = |change: &mut [f64]| {
             turns.back(&mut change[..n]);
             factor.solve(change);
             turns.forth(&mut change[..n]);
-        })?;
+        };
+        motion.project(to, &StepMatrix { inertia: c, step: h, solve })?;
         Ok(if allowed.is_some() { self.error(h, c) + unseen } else { 0.0 })
     }
 

@@ -42,6 +42,9 @@ pub trait Method: Send {
         1.0
     }
 
+    /// Whether the last step is much too long for vibrations of the mesh, by which states between its ends would err.
+    fn vibrates(&self) -> bool;
+
     /// Prepares the first step from `state`; returns q̈ there.
     ///
     /// # Errors

@@ -34,8 +34,10 @@
 //! formed anew with each tangent.
 
 mod laws;
+mod projection;
 mod reactions;
 
+pub use projection::StepMatrix;
 pub use reactions::{Balance, StageState};
 
 use super::State;
@@ -52,26 +54,6 @@ use crate::system::System;
 use crate::threads;
 use faer::c64;
 use std::borrow::Cow;
-
-/// Most corrections by which a state is moved onto the constraints.
-const CORRECTIONS: usize = 12;
-/// Each of them is smaller by this at least …
-const SHRINKS: f64 = 0.5;
-/// … down to the round-off of what is left, in beam lengths, …
-const ROUND_OFF: f64 = 1e-11;
-/// … and none follows that would be smaller than this.
-const NEGLIGIBLE: f64 = 1e-13;
-
-/// What is moved onto the constraints.
-#[derive(Clone, Copy)]
-enum Corrected {
-    Positions,
-    Velocities,
-}
-
-impl Corrected {
-    const BOTH: [Self; 2] = [Self::Positions, Self::Velocities];
-}
 
 /// Velocities and accelerations of the unknowns at a time.
 #[derive(Clone, Copy, Debug)]
@@ -114,6 +96,8 @@ pub struct Motion<'a> {
     /// The constraint rows with which it is factorised.
     mass_border: Vec<BorderRow>,
     border: Vec<BorderRow>,
+    /// Whether the last step is much too long for vibrations of the mesh.
+    pub vibrates: bool,
     /// Tangent of elastic forces and loads in the supports' frames, fixed coordinates eliminated.
     tangent: Matrix,
     /// Damping matrix in the same form; none if no force depends on velocities.
@@ -175,6 +159,7 @@ impl<'a> Motion<'a> {
             mass_factor,
             mass_border: Vec::new(),
             border,
+            vibrates: false,
             tangent: system.matrix(),
             damping: system.is_damped().then(|| system.damping_pattern()),
             carries,
@@ -609,75 +594,6 @@ impl<'a> Motion<'a> {
             self.system.carry(state.time, [&mut state.q, &mut state.v, &mut acceleration]);
         }
         acceleration
-    }
-
-    /// Moves a state at the end of a `step` onto the constraints: they hold to round-off only in the equations of a
-    /// step, and what remains of their error in positions and velocities would add up over many steps. `solve`
-    /// solves with the matrix of the step, C = c M + K with the constraints' rows B, so that the change
-    ///
-    /// ```text
-    /// C δ + Bᵀ λ = 0,   B δ = −g
-    /// ```
-    ///
-    /// is the smallest in the norm of C. In that of the kinetic energy alone it would be that of a blow, which bends
-    /// a stiff beam in the few cells beside a hinge: a vibration that no step follows. The matrix may be that of an
-    /// earlier state, with other rows, and the change is repeated as long as it shrinks.
-    ///
-    /// # Errors
-    /// [`Singular`] where a coordinate has no mass.
-    pub fn project(
-        &mut self,
-        state: &mut State,
-        step: f64,
-        solve: impl Fn(&mut [f64]),
-    ) -> Result<(), Singular> {
-        if self.system.multipliers() > 0
-            && !Corrected::BOTH.iter().all(|what| self.correct(*what, state, step, &solve))
-        {
-            self.mass_at(state.time, &state.q)?;
-            let mass = self.mass_factor.take().expect(NOT_FACTORISED);
-            // Of exact rows one correction is enough, and a second one takes round-off away.
-            Corrected::BOTH.iter().for_each(|what| {
-                _ = self.correct(*what, state, step, &|change: &mut [f64]| mass.solve(change))
-            });
-            self.mass_factor = Some(mass);
-        }
-        Ok(())
-    }
-
-    /// Corrects positions or velocities until their constraints hold; false where corrections do not become smaller.
-    fn correct(&self, what: Corrected, state: &mut State, step: f64, solve: &impl Fn(&mut [f64])) -> bool {
-        let (n, supports) = (self.coordinates(), self.system.supports());
-        let mut change = vec![0.0; self.unknowns()];
-        let mut last = f64::INFINITY;
-        for _ in 0..CORRECTIONS {
-            change[..n].fill(0.0);
-            match what {
-                Corrected::Positions => self.system.constraint_values(state.time, &state.q, &mut change[n..]),
-                Corrected::Velocities => {
-                    self.system.constraint_rates(state.time, &state.q, &state.v, &mut change[n..]);
-                    self.system.add_prescribed_rates(1, state.time, &mut change[n..]);
-                }
-            }
-            solve(&mut change);
-            supports.to_fixed_axes(state.time, &mut change[..n]);
-            self.system.polar().changes(&state.q, &mut change[..n]);
-            let (of, unit) = match what {
-                Corrected::Positions => (&mut state.q, 1.0),
-                Corrected::Velocities => (&mut state.v, step),
-            };
-            let size = unit * self.size(&change[..n]);
-            if size.is_nan() || size > SHRINKS * last {
-                return last <= ROUND_OFF;
-            }
-            of.iter_mut().zip(&change).for_each(|(x, d)| *x += d);
-            let ratio = if last.is_finite() { size / last } else { SHRINKS };
-            if size * ratio <= NEGLIGIBLE {
-                return true;
-            }
-            last = size;
-        }
-        last <= ROUND_OFF
     }
 
     /// Root mean square over the nodes of the change of their positions, in beam lengths.

@@ -1,0 +1,183 @@
+//! The end of a step moved onto the constraints.
+//!
+//! They hold to round-off only in the equations of a step, and what remains of their error in positions and velocities would add up
+//! over many steps. The change δ is the smallest in the norm of the kinetic energy,
+//!
+//! ```text
+//! M δ + Bᵀ μ = 0,   B δ = −g
+//! ```
+//!
+//! with which Radau's methods keep their order (Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, ch. VII) and a
+//! free motion its momentum.
+//!
+//! # What bends stiff beams
+//! The smallest velocities that close a hinge are those of a blow, which bends a stiff beam in the few cells beside it: a vibration
+//! that no step follows. The next step would end it, but its prediction, its error and every record in it would be those of a beam that
+//! shakes. The fast part φ of the change,
+//!
+//! ```text
+//! (c M + K) φ + Bᵀ λ = K δ,   B φ = 0
+//! ```
+//!
+//! with the matrix c M + K of the step, is therefore taken away from δ. Of slow motions it is a part of the order h², and a motion of the
+//! whole beam has none of it. Mass, tangent and rows must be those of the present state, or the method loses an order: the factors of
+//! the step, which are of an earlier one, serve to correct φ until the equations hold.
+
+use super::{Motion, State};
+use crate::linear::{NOT_FACTORISED, Singular};
+
+/// Vibrations, or a change, are too fast for a step where their ω² is so many times the c of its matrix c M + K.
+const FAST: f64 = 1e3;
+/// Most corrections of the fast part …
+const CORRECTIONS: usize = 16;
+/// … which is found where each is smaller than the one before by this factor at least …
+const UNSOLVED: f64 = 0.7;
+/// … to this part of the first of them, …
+const PRECISE: f64 = 1e-8;
+/// … or to this size in beam lengths.
+const NEGLIGIBLE: f64 = 1e-13;
+
+/// The matrix c M + K of a step.
+pub struct StepMatrix<F> {
+    /// c \[1/s²\].
+    pub inertia: f64,
+    /// h \[s\].
+    pub step: f64,
+    /// Solves with it and the rows of the constraints in the supports' frames; it may be that of an earlier state.
+    pub solve: F,
+}
+
+/// What is moved onto the constraints.
+#[derive(Clone, Copy)]
+enum Moved {
+    Positions,
+    Velocities,
+}
+
+impl Moved {
+    fn of(self, state: &mut State) -> &mut Vec<f64> {
+        match self {
+            Self::Positions => &mut state.q,
+            Self::Velocities => &mut state.v,
+        }
+    }
+}
+
+impl Motion<'_> {
+    /// Moves a state at the end of a step, which had this matrix, onto the constraints.
+    ///
+    /// # Errors
+    /// [`Singular`] where a coordinate has no mass.
+    pub fn project(
+        &mut self,
+        state: &mut State,
+        matrix: &StepMatrix<impl Fn(&mut [f64])>,
+    ) -> Result<(), Singular> {
+        if self.system.multipliers() == 0 {
+            return Ok(());
+        }
+        self.mass_at(state.time, &state.q)?;
+        self.vibrates = self.follows && self.fastest() > FAST * matrix.inertia;
+        for (moved, time) in [(Moved::Positions, 1.0), (Moved::Velocities, matrix.step)] {
+            let change = self.correct(moved, state);
+            if !self.vibrates {
+                continue;
+            }
+            if let Some(fast) = self.fast_part(state, &change, time, matrix) {
+                moved.of(state).iter_mut().zip(&fast).for_each(|(x, fast)| *x -= fast);
+                self.correct(moved, state);
+            }
+        }
+        Ok(())
+    }
+
+    /// Corrects positions or velocities by the change that it returns, with multipliers behind it. One correction is enough, for
+    /// quadratic rows too: the error that a step leaves is small.
+    fn correct(&self, moved: Moved, state: &mut State) -> Vec<f64> {
+        let n = self.coordinates();
+        let mut change = vec![0.0; self.unknowns()];
+        match moved {
+            Moved::Positions => self.system.constraint_values(state.time, &state.q, &mut change[n..]),
+            Moved::Velocities => {
+                self.system.constraint_rates(state.time, &state.q, &state.v, &mut change[n..]);
+                self.system.add_prescribed_rates(1, state.time, &mut change[n..]);
+            }
+        }
+        self.mass_factor.as_ref().expect(NOT_FACTORISED).solve(&mut change);
+        self.to_fixed_axes(state, &mut change);
+        moved.of(state).iter_mut().zip(&change).for_each(|(x, d)| *x += d);
+        change
+    }
+
+    /// The fast part of a change of positions, or of velocities during a `time` \[s\]; `None` where it is slow, or is not found with the
+    /// matrix of the step.
+    fn fast_part(
+        &self,
+        state: &State,
+        change: &[f64],
+        time: f64,
+        StepMatrix { inertia, solve, .. }: &StepMatrix<impl Fn(&mut [f64])>,
+    ) -> Option<Vec<f64>> {
+        let (n, q) = (self.coordinates(), &state.q[..]);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let force = |d: &[f64]| {
+            let mut force = vec![0.0; n];
+            self.system.tangent_product(state.time, q, d, &mut force);
+            force
+        };
+        let momentum = |d: &[f64]| {
+            let mut momentum = vec![0.0; n];
+            self.mass.multiply_add(1.0, d, &mut momentum);
+            self.system.add_turning_momentum(q, d, &mut momentum);
+            momentum
+        };
+        let wanted = force(&change[..n]);
+        if dot(change, &wanted) <= FAST * inertia * dot(change, &momentum(&change[..n])) {
+            return None;
+        }
+        let mut fast = vec![0.0; self.unknowns()];
+        let (mut first, mut last) = (0.0, f64::INFINITY);
+        for _ in 0..CORRECTIONS {
+            let mut found = force(&fast[..n]);
+            found.iter_mut().zip(momentum(&fast[..n])).for_each(|(f, p)| *f += inertia * p);
+            self.system.add_constraint_forces(state.time, q, &fast[n..], &mut found);
+            let mut more: Vec<f64> =
+                wanted.iter().zip(&found).map(|(wanted, found)| wanted - found).collect();
+            more.resize(self.unknowns(), 0.0);
+            self.system.supports().to_frames(state.time, &mut more[..n]);
+            self.system.polar().forces(q, &mut more[..n]);
+            self.system.constraint_rates(state.time, q, &fast[..n], &mut more[n..]);
+            solve(&mut more);
+            self.to_fixed_axes(state, &mut more);
+            let size = time * self.size(&more[..n]);
+            if size.is_nan() || size > UNSOLVED * last {
+                return None;
+            }
+            fast.iter_mut().zip(&more).for_each(|(x, d)| *x += d);
+            if !last.is_finite() {
+                first = size;
+            } else if size * (size / last) <= NEGLIGIBLE.max(PRECISE * first) {
+                fast.truncate(n);
+                return Some(fast);
+            }
+            last = size;
+        }
+        None
+    }
+
+    /// Turns a change of the unknowns of a state into fixed axes.
+    fn to_fixed_axes(&self, state: &State, change: &mut [f64]) {
+        let n = self.coordinates();
+        self.system.supports().to_fixed_axes(state.time, &mut change[..n]);
+        self.system.polar().changes(&state.q, &mut change[..n]);
+    }
+
+    /// About the square ω² \[1/s²\] of the fastest vibration: the largest that one coordinate alone has in the last tangent.
+    fn fastest(&self) -> f64 {
+        let alone = |i: usize| {
+            let mass = self.free_mass.get(i, i);
+            if mass > 0.0 { self.tangent.get(i, i) / mass } else { 0.0 }
+        };
+        (0..self.coordinates()).map(alone).fold(0.0, f64::max)
+    }
+}
