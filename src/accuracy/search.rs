@@ -172,6 +172,7 @@ impl<'a, 'o> Search<'a, 'o> {
                 Some(before) if now.excess > STALLED * before.excess => stalls + 1,
                 _ => 0,
             };
+            let same_steps = before.as_ref().is_some_and(|before| before.tolerance == now.tolerance);
             // No error is smaller than what finer meshes do not remove.
             let errors = judged.errors();
             judged.excess = self.runner.wanted.map_or(0.0, |wanted| excess(errors, wanted));
@@ -201,6 +202,10 @@ impl<'a, 'o> Search<'a, 'o> {
                 Some(growth)
             } else if rounds >= ROUNDS {
                 Some(format!("{ROUNDS} rounds of finer meshes and smaller steps were not enough"))
+            } else if stalls > 0 && same_steps && self.runner.open.integrator {
+                // What a finer mesh alone did not make smaller may be what the steps err by on each mesh.
+                self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(FINEST));
+                None
             } else {
                 self.improve(&judged, wanted, rounds > 1).err().map(|why| match self.runner.kink_at() {
                     Some(kink) => format!("{why}; {kink}"),
