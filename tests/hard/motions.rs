@@ -218,6 +218,21 @@ fn hinged_rods_are_not_bent_by_what_keeps_their_length() {
     }
 }
 
+/// A support turns a stiff arm that keeps its length, from which another one hangs by a hinge: all that it puts in is in the balance
+/// of energy, of 2 J that move.
+#[test]
+fn the_work_of_a_support_that_drives_stiff_rods_is_complete() {
+    let scene = "beam.a = { start = [0, 0], end = [0.5, 0], bending_stiffness = 1e5, mass_per_length = 1, basis.ancf.elements = 3 }
+        beam.b = { start = [0.5, 0], end = [0.9, 0.3], bending_stiffness = 1e3, mass_per_length = 0.6, basis.ancf.elements = 4 }
+        support = [{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'], move = { angle = 6, in_time.smooth_ramp.duration = 1 } }]
+        joint = [{ type = 'hinge', first = { beam = 'a', at = 'end' }, second = { beam = 'b', at = 'start' } }]
+        effect.gravity.acceleration = [0, -9.81]
+        analysis.dynamic = { duration = 1.2, INTEGRATOR }\n";
+    let found = moved(scene, "radau = { stages = 2, step = 0.005 }").expect("a motion");
+    let total = found.energy.last().expect("a record").total() - found.energy[0].total();
+    assert!(total.abs() < 2e-3, "{total:.1e} J");
+}
+
 /// Two hinged rods that keep their length fly apart from their hinge, at rest at first, with no force on them: their centre of mass
 /// goes on with the velocity Σ m v/Σ m of their midpoints. No other norm than that of the kinetic energy moves states onto the
 /// constraints so.

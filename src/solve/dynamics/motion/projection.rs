@@ -21,7 +21,8 @@
 //!
 //! with the matrix c M + K of the step, is therefore taken away from δ. Of slow motions it is a part of the order h², and a motion of the
 //! whole beam has none of it. Mass, tangent and rows must be those of the present state, or the method loses an order: the factors of
-//! the step, which are of an earlier one, serve to correct φ until the equations hold.
+//! the step, which are of an earlier one, serve to correct φ until the equations hold. Where supports move or tendons are pulled, the
+//! change stays as it is: what it takes from them would be missing in their work.
 
 use super::{Motion, State};
 use crate::linear::{NOT_FACTORISED, Singular};
@@ -77,7 +78,8 @@ impl Motion<'_> {
             return Ok(());
         }
         self.mass_at(state.time, &state.q)?;
-        self.vibrates = self.follows && self.fastest() > FAST * matrix.inertia;
+        let is_fed = self.system.works_by_constraints();
+        self.vibrates = self.follows && !is_fed && self.fastest() > FAST * matrix.inertia;
         for (moved, time) in [(Moved::Positions, 1.0), (Moved::Velocities, matrix.step)] {
             let change = self.correct(moved, state);
             if !self.vibrates {
