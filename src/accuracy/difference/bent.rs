@@ -1,6 +1,6 @@
 //! What meshfree shape functions make of a constant curvature.
 //!
-//! Radial functions reproduce no quadratic polynomials. Near an end of a beam, over which no nodes lie, the curvature of their
+//! Radial functions reproduce no quadratic polynomials. Near an end of a beam, beyond which there are no nodes, the curvature of their
 //! interpolation is wrong by a part that does not fall with the spacing of the nodes, so that coarser meshes do not tell it.
 
 use super::{Difference, larger};

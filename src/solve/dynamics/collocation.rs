@@ -696,7 +696,9 @@ impl Method for Collocation<'_> {
         if may_not_see_loads(self.control, h) {
             unseen += self.make_up(state, from, to);
         }
-        self.turn_to(to);
+        if !self.multipliers.is_empty() {
+            self.turn_to(to);
+        }
         self.motion.carry(to);
         let (block, inertia) = (self.leading_block(), self.eigenvalue().norm_sqr() / (h * h));
         let Self { motion, kept, turns, .. } = self;
