@@ -468,8 +468,10 @@ impl<'a, 'o> Runner<'a, 'o> {
             }
         }
         if let (Ok(difference), Results::Trajectory(run)) = (&difference, &results) {
-            unseen = both(unseen, difference::laid_out(self.model, difference));
-            unseen = both(unseen, difference::bent(self.model, run, difference));
+            // The scene may leave it open that a beam is meshfree.
+            let (chosen, _) = setting.apply(self.model, self.analysis);
+            unseen = both(unseen, difference::laid_out(&chosen, difference));
+            unseen = both(unseen, difference::bent(&chosen, run, difference));
         }
         let fall = before
             .zip(difference.as_ref().ok())
