@@ -5,7 +5,7 @@ mod unseen;
 use super::difference::{self, Difference, StrainJump, jumps_of_modes, stations, stiffness_jumps};
 use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
-use super::saturation::{ends_prevail, saturates};
+use super::saturation::{ends_prevail, has_uneven_cells, saturates};
 use super::setting::{Family, Setting, Solver};
 use crate::basis::Basis;
 use crate::centreline::Curve;
@@ -214,9 +214,12 @@ impl<'a, 'o> Runner<'a, 'o> {
             }
         }
         let moves = matches!(analysis, Analysis::Dynamic(_));
-        let dissimilar =
-            |(beam, coarse): (&Beam, &Mesh)| !moves && ends_prevail(&beam.discretization, coarse.cells());
-        let dissimilar = model.beams.iter().zip(&meshes).map(dissimilar).collect();
+        let dissimilar = |(index, coarse): (usize, &Mesh)| {
+            let discretization = &model.beams[index].discretization;
+            let uneven = || has_uneven_cells(discretization, coarse.length(), &model.breaks(index));
+            !moves && (ends_prevail(discretization, coarse.cells()) || uneven())
+        };
+        let dissimilar = meshes.iter().enumerate().map(dissimilar).collect();
         let coarsening = |named: &Option<Mesh>| named.as_ref().map_or(Some(2.0), Mesh::coarsening);
         let times = named.iter().filter_map(coarsening).fold(f64::INFINITY, f64::min);
         let tolerance = short((TOLERANCE * result).min(FIRST_TOLERANCE));

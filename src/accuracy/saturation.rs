@@ -5,7 +5,7 @@
 //! stationary interpolation: M. D. Buhmann, *Radial Basis Functions*, Cambridge 2003, chapter 5). From
 //! there on a mesh and its halves agree with each other and not with the truth, so that elements, which
 //! reproduce cubic polynomials, have to be asked. So they have where half as many nodes are so few that most shape
-//! functions reach to an end ([`ends_prevail`]).
+//! functions reach to an end ([`ends_prevail`]), and where a cell is much shorter than the next ([`has_uneven_cells`]).
 
 use super::difference::defects;
 use crate::basis::Basis;
@@ -15,6 +15,8 @@ use crate::model::{Discretization, Nodes};
 const REPRODUCED: f64 = 1e-3;
 /// Nodes beside those that a cell between the ends reaches over.
 const ENDS: usize = 4;
+/// Of neighbouring cells of which one is shorter than this part of the other, meshfree shape functions amplify round-off fiftyfold.
+const UNEVEN: f64 = 0.2;
 /// Places in each cell.
 const PLACES: [f64; 3] = [0.15, 0.5, 0.85];
 
@@ -34,6 +36,20 @@ pub(super) fn saturates(discretization: &Discretization, length: f64) -> bool {
 /// within the beam. By how much they differ from those on twice as many cells tells nothing of how much the latter err.
 pub(super) fn ends_prevail(discretization: &Discretization, cells: usize) -> bool {
     matches!(discretization, Discretization::Rpim { neighbours, .. } if cells <= 2 * (2 * neighbours + 1))
+}
+
+/// Whether of the cells of a meshfree beam of this length \[m\], with nodes at its `breaks` \[m\], one is much shorter than the next.
+/// On a coarser mesh, which has not all of these nodes, shape functions are others there.
+pub(super) fn has_uneven_cells(discretization: &Discretization, length: f64, breaks: &[f64]) -> bool {
+    let Discretization::Rpim { nodes, .. } = discretization else { return false };
+    let elements = Discretization::Ancf { nodes: nodes.clone() };
+    Basis::broken(&elements, length, breaks).is_ok_and(|basis| is_uneven(basis.nodes()))
+}
+
+/// Whether a cell is much shorter than one beside it.
+pub(super) fn is_uneven(nodes: &[f64]) -> bool {
+    let cells: Vec<f64> = nodes.windows(2).map(|ends| ends[1] - ends[0]).collect();
+    cells.windows(2).any(|pair| pair[0].min(pair[1]) < UNEVEN * pair[0].max(pair[1]))
 }
 
 /// The largest part by which a constant curvature is wrong within cells; `None` where there are no such shape functions.
@@ -63,6 +79,18 @@ mod tests {
         let found = |cells| ends_prevail(&meshfree(9, None), cells);
         assert!(found(4) && found(10) && !found(11));
         assert!(!ends_prevail(&Discretization::ancf(9), 4));
+    }
+
+    /// A break a fifth of a cell beside a given node; even nodes move there. Elements do not reach over others.
+    #[test]
+    fn breaks_may_leave_uneven_cells() {
+        let mut given = meshfree(9, None);
+        if let Discretization::Rpim { nodes, .. } = &mut given {
+            *nodes = Nodes::Given(vec![0.0, 1.0, 2.0, 3.0, 4.0]);
+        }
+        let uneven = |discretization: &Discretization, s: f64| has_uneven_cells(discretization, 4.0, &[s]);
+        assert!(uneven(&given, 1.15) && !uneven(&given, 1.25) && !uneven(&meshfree(5, None), 1.15));
+        assert!(!uneven(&Discretization::Ancf { nodes: given.nodes().clone() }, 1.15));
     }
 
     /// The number of nodes and the length do not matter. Beams of these kernels were compared with many

@@ -395,6 +395,27 @@ fn errors_that_finer_meshes_do_not_remove_are_seen() {
     assert_eq!([10, 40].map(runs), [4, 3]);
 }
 
+/// A couple near to a given node makes a short cell between longer ones, beside which the shape functions of a mesh without that node are
+/// others. Many elements are the judge.
+#[test]
+fn errors_beside_a_short_meshfree_cell_are_seen() {
+    let of = |basis: &str| {
+        let rest = "effect.gravity.acceleration = [0.04, 5]\neffect.moment = [{ beam = 'arm', at = 0.25, value = 0.1 }]\nanalysis.static = {}";
+        let text = cantilever(60.0, 1.0, rest).replace("mass_per", &format!("basis = {basis}, mass_per"));
+        let scene = scene(&text.replace("at = 'end' }", "at = 0.19 }"));
+        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("results")
+    };
+    let exact = last(&of("{ ancf = { elements = 200 } }"));
+    let nodes = "0, 0.0345, 0.0916, 0.136, 0.175, 0.24, 0.284, 0.316, 0.368, 0.397, 0.429, 0.481, 0.513, 0.548, 0.605, 0.67, 0.734, 0.772, \
+                 0.802, 0.842, 0.901, 0.956, 1";
+    let results = of(&format!("{{ rpim.nodes = [{nodes}] }}"));
+    let found = last(&results);
+    let truth = (found.x - exact.x).hypot(found.y - exact.y);
+    let told = error(&results).probes[0].samples.last().expect("a state");
+    let worth = truth / told.x.hypot(told.y);
+    assert!((0.2..=3.0).contains(&worth), "{truth:e}: {worth}");
+}
+
 /// At the end of a bar that is pulled, meshfree cells of every size have the same part of the strain too little.
 #[test]
 fn the_strain_at_an_end_of_a_meshfree_bar_errs_by_as_much_as_beside_it() {

@@ -4,6 +4,7 @@
 use super::{Purpose, Round, Runner, coarser, short};
 use crate::accuracy::difference::{self, Difference, StrainJump, fixed_gradients, is_path};
 use crate::accuracy::mesh::Mesh;
+use crate::accuracy::saturation::is_uneven;
 use crate::accuracy::setting::{Family, Setting, Solver};
 use crate::basis::Basis;
 use crate::centreline::Curve;
@@ -31,8 +32,6 @@ const MOST_ITERATIONS: usize = 10;
 
 /// Most records of which it is known where their forces pass corners of laws.
 const RECORDS: usize = 64;
-/// Of neighbouring cells of which one is shorter than this part of the other, meshfree shape functions amplify round-off fiftyfold.
-const UNEVEN: f64 = 0.2;
 /// What acts this near to a node, in cells, acts there: the error is the cube of it.
 const AT_NODE: f64 = 0.02;
 
@@ -284,12 +283,6 @@ impl Runner<'_, '_> {
             )
         })
     }
-}
-
-/// Whether a cell is much shorter than one beside it.
-fn is_uneven(nodes: &[f64]) -> bool {
-    let cells: Vec<f64> = nodes.windows(2).map(|ends| ends[1] - ends[0]).collect();
-    cells.windows(2).any(|pair| pair[0].min(pair[1]) < UNEVEN * pair[0].max(pair[1]))
 }
 
 /// Whether something acts in a point within a cell that the scene gives a beam. `named` has nodes there, and those that the scene
