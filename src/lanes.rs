@@ -35,6 +35,8 @@ pub trait Real:
     fn inverse(self) -> Self;
     /// |x|.
     fn abs(self) -> Self;
+    /// sin x and cos x.
+    fn sin_cos(self) -> (Self, Self);
 }
 
 impl Real for f64 {
@@ -62,6 +64,11 @@ impl Real for f64 {
     fn abs(self) -> Self {
         Self::abs(self)
     }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        Self::sin_cos(self)
+    }
 }
 
 impl Real for Lanes {
@@ -88,6 +95,11 @@ impl Real for Lanes {
     #[inline(always)]
     fn abs(self) -> Self {
         Self::abs(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        Self::sin_cos(self)
     }
 }
 

@@ -16,6 +16,7 @@
 
 use super::constraints::Constraint;
 use super::polar::Polar;
+use super::reaction::Source;
 use super::{BuildError, System};
 use crate::basis::BasisTable;
 use crate::model::{Joint, Place};
@@ -99,14 +100,20 @@ fn table(system: &System, order: usize, place: Place) -> Result<(BasisTable, usi
 /// a support fixes something of the gradient.
 pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, BuildError> {
     let fixed: Vec<usize> = system.supports.eliminated().map(|i| i / 2).collect();
-    let mut pairs = Vec::new();
-    for joint in joints {
+    let (mut pairs, mut welds) = (Vec::new(), Vec::new());
+    let node = |place: Place| {
+        let (part, s) = system.part("a joint", place)?;
+        Ok(part.basis.node_at(s).map(|node| part.first_node + node))
+    };
+    let of_joints = &system.sources[system.sources.len() - joints.len()..];
+    for (joint, rows) in joints.iter().zip(of_joints) {
         let Joint::Weld { first, second } = *joint else { continue };
-        for place in [first, second] {
-            let (part, s) = system.part("a joint", place)?;
-            pairs.extend(part.basis.node_at(s).map(|node| 2 * (part.first_node + node) + 1));
+        let nodes = transpose([node(first), node(second)])?;
+        pairs.extend(nodes.iter().flatten().map(|node| 2 * node + 1));
+        if let ([Some(first), Some(second)], Source::Rows(rows)) = (nodes, rows) {
+            welds.push(([first, second], rows.start));
         }
     }
     pairs.retain(|pair| !fixed.contains(pair));
-    Ok(Polar::new(pairs))
+    Ok(Polar::new(pairs, welds))
 }

@@ -23,6 +23,8 @@ use crate::linear::Matrix;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polar {
     pairs: Vec<usize>,
+    /// The nodes of each weld, and the first of its rows, which are those of its position.
+    welds: Vec<([usize; 2], usize)>,
 }
 
 /// The columns e and y n of P for the gradient (x, y).
@@ -40,11 +42,11 @@ fn of(v: &mut [f64], pair: usize) -> &mut [f64; 2] {
 }
 
 impl Polar {
-    /// Polar coordinates for the given pairs.
-    pub fn new(mut pairs: Vec<usize>) -> Self {
+    /// Polar coordinates for the given pairs, which are at the nodes of these welds, with the first row of each.
+    pub fn new(mut pairs: Vec<usize>, welds: Vec<([usize; 2], usize)>) -> Self {
         pairs.sort_unstable();
         pairs.dedup();
-        Self { pairs }
+        Self { pairs, welds }
     }
 
     /// Whether there are no such pairs.
@@ -120,6 +122,29 @@ impl System {
         self.supports.turn_in_time() || !self.polar.is_empty()
     }
 
+    /// Pairs of unknowns that turn as a welded node does, whose direction θ is an unknown: θ, and the first of the pair. They are the
+    /// position of the node, and the force in the weld. A node of which a support fixes one component of the position keeps its axes,
+    /// and so do those that are welded to it.
+    pub fn turning_pairs(&self) -> Vec<[usize; 2]> {
+        let Polar { pairs, welds } = &self.polar;
+        let mut still: Vec<usize> = self.supports.half_fixed().collect();
+        let turns = |still: &[usize], node: &usize| {
+            !still.contains(node) && pairs.binary_search(&(2 * node + 1)).is_ok()
+        };
+        loop {
+            let mut held = welds.iter().filter(|(nodes, _)| nodes.iter().any(|node| !turns(&still, node)));
+            let next = held.find_map(|(nodes, _)| nodes.iter().find(|node| turns(&still, node)));
+            let Some(next) = next else { break };
+            still.push(*next);
+        }
+        let direction = |node: usize| 4 * node + 3;
+        let nodes = self.polar.nodes().filter(|node| turns(&still, node));
+        let positions = nodes.map(|node| [direction(node), 4 * node]);
+        let welds = welds.iter().filter(|(nodes, _)| nodes.iter().all(|node| turns(&still, node)));
+        let forces = welds.map(|([node, _], row)| [direction(*node), self.coordinates() + row]);
+        positions.chain(forces).collect()
+    }
+
     /// Transforms the unknowns of a motion to positions, velocities and accelerations in fixed
     /// axes.
     pub fn carry(&self, time: f64, [q, v, a]: [&mut [f64]; 3]) {
@@ -138,11 +163,13 @@ impl System {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assembly::Needs;
+    use crate::model::{Beam, Discretization, Fixed, Joint, Model, Place, Section, Support};
 
     #[test]
     fn rates_are_derivatives() {
         // y = 1.1 + 0.3 t − 0.2 t², θ = 2 + 1.7 t + 0.4 t².
-        let polar = Polar::new(vec![1, 1]);
+        let polar = Polar::new(vec![1, 1], Vec::new());
         let at = |t: f64| {
             let mut q = [5.0, 6.0, 1.1 + 0.3 * t - 0.2 * t * t, 2.0 + 1.7 * t + 0.4 * t * t];
             let (mut v, mut a) = ([7.0, 8.0, 0.3 - 0.4 * t, 1.7 + 0.8 * t], [0.0, 9.0, -0.4, 0.8]);
@@ -162,5 +189,36 @@ mod tests {
         assert!((dy[2] - 0.3).abs() < 1e-15 && (dy[3] - 1.7).abs() < 1e-15);
         polar.changes(&q, &mut dy);
         assert!(dy.iter().zip(v).all(|(a, b)| (a - b).abs() < 1e-14));
+    }
+
+    /// Four beams begin in one point: the first is hinged to the second, and the others are welded to that. Both unknowns of a position
+    /// and of the force of each weld turn, unless a support holds one component of one of the positions.
+    #[test]
+    fn positions_and_forces_turn_with_welded_nodes() {
+        let of = |held: Option<usize>| {
+            let beam = |end: [f64; 2]| {
+                let section = Section { mass_per_length: Some(1.0.into()), ..Section::new(1.0, 1.0) };
+                Beam::line("arm", [0.0, 0.0], end, section, Discretization::ancf(2))
+            };
+            let ends = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+            let at = |beam: usize| Place::new(beam, 0.0);
+            let fix = Fixed { y: true, ..Fixed::default() };
+            let supports = held.map(|beam| Support { at: at(beam), fix, ..Support::default() });
+            let model = Model {
+                beams: ends.map(beam).into(),
+                supports: supports.into_iter().collect(),
+                joints: vec![
+                    Joint::Hinge { first: at(0), second: at(1) },
+                    Joint::Weld { first: at(1), second: at(2) },
+                    Joint::Weld { first: at(2), second: at(3) },
+                ],
+                ..Model::default()
+            };
+            System::build(&model, Needs { inertia: true, motion: true }).expect("a system").turning_pairs()
+        };
+        // Nodes 2, 4 and 6, and the two rows of each weld behind those of the hinge.
+        assert_eq!(of(None), [[11, 8], [19, 16], [27, 24], [11, 34], [19, 37]]);
+        assert!(of(Some(3)).is_empty());
+        assert_eq!(of(Some(0)).len(), 5);
     }
 }

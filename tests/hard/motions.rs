@@ -265,6 +265,36 @@ fn what_keeps_lengths_leaves_momentum_alone() {
     }
 }
 
+/// Two stiff beams at right angles, welded, fly and spin as one body: the end of the second turns about the centre of mass, which goes
+/// straight on. What they are welded by turns with them, and so does a tangent, that serves for many steps.
+#[test]
+fn tangents_turn_with_welded_beams() {
+    let scene = "beam.a = { start = [0, 0], end = [1, 0], bending_stiffness = 1e7, STRETCH mass_per_length = 1, basis.ancf.elements = 8 }
+        beam.b = { start = [1, 0], end = [1, 1], bending_stiffness = 1e7, STRETCH mass_per_length = 1, basis.ancf.elements = 8 }
+        initial_velocity = [
+            { beam = 'a', rotation = 6, about = [0.75, 0.25], value = [1, 0.5] },
+            { beam = 'b', rotation = 6, about = [0.75, 0.25], value = [1, 0.5] },
+        ]
+        joint = [{ type = 'weld', first = { beam = 'a', at = 'end' }, second = { beam = 'b', at = 'start' } }]
+        probe = [{ name = 'end', beam = 'b', at = 'end' }]
+        analysis.dynamic = { duration = 2, INTEGRATOR }\n";
+    let (sine, cosine) = 12_f64.sin_cos();
+    let exact = [2.75 + 0.25 * cosine - 0.75 * sine, 1.25 + 0.25 * sine + 0.75 * cosine];
+    for stretch in ["", "axial_stiffness = 1e8, "] {
+        for (integrator, allowed) in
+            [("radau.tolerance = 1e-4", 1e-4), ("generalized_alpha.step = 0.002", 1e-3)]
+        {
+            let found = moved(&scene.replace("STRETCH ", stretch), integrator).expect("a motion");
+            let [x, y] = positions(&found).last().expect("the end");
+            let error = (x - exact[0]).hypot(y - exact[1]);
+            assert!(error < allowed, "{integrator}, {stretch}: errs by {error:.1e} m");
+            let statistics = &found.run.statistics;
+            let factorizations = statistics.factorizations;
+            assert!(2 * factorizations < statistics.steps, "{integrator}, {stretch}: {statistics:?}");
+        }
+    }
+}
+
 /// A free beam of 1 kg that a pulse pushes by 0.1 N s in its middle, as briefly as it may be against a step: from then on its centre
 /// of mass goes 0.1 m/s faster. The middle vibrates about it by some tenths of a millimetre.
 #[test]

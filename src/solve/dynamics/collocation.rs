@@ -146,8 +146,7 @@ struct FactoredTangent {
 impl FactoredTangent {
     /// The real part of (ζ²/h² M + K)⁻¹ `factor` e for the ζ of a block, in the supports' frames, with the tangent turned.
     fn solve_turned(&self, block: usize, turns: &Turns, factor: Complex<f64>, e: &mut [f64]) {
-        let n = self.at.q.len();
-        turns.back(&mut e[..n]);
+        turns.back(e);
         match &self.factors[block] {
             BlockFactor::Real(matrix) => {
                 matrix.solve(e);
@@ -159,7 +158,7 @@ impl FactoredTangent {
                 matrix.solve(e, &mut imaginary);
             }
         }
-        turns.forth(&mut e[..n]);
+        turns.forth(e);
     }
 }
 

@@ -310,10 +310,9 @@ impl<'a> GeneralizedAlpha<'a> {
 
     /// The size of (K + cM)⁻¹ e.
     fn filtered(&self, e: &mut [f64]) -> f64 {
-        let n = self.motion.coordinates();
-        self.turns.back(&mut e[..n]);
+        self.turns.back(e);
         self.factor.as_ref().expect(NOT_FACTORISED).solve(e);
-        self.turns.forth(&mut e[..n]);
+        self.turns.forth(e);
         self.motion.distance(e)
     }
 
@@ -499,9 +498,9 @@ impl Method for GeneralizedAlpha<'_> {
         let Self { motion, factor, turns, .. } = self;
         let factor = factor.as_ref().expect(NOT_FACTORISED);
         let solve = |change: &mut [f64]| {
-            turns.back(&mut change[..n]);
+            turns.back(change);
             factor.solve(change);
-            turns.forth(&mut change[..n]);
+            turns.forth(change);
         };
         motion.project(to, &StepMatrix { inertia: c, step: h, solve })?;
         Ok(if allowed.is_some() { self.error(h, c) + unseen } else { 0.0 })

@@ -41,7 +41,7 @@ pub use projection::StepMatrix;
 pub use reactions::{Balance, StageState};
 
 use super::State;
-use super::turns::Turns;
+use super::turns::{PairTurns, Turns};
 use crate::assembly::{AcceptedState, Earlier, Node, Workspace, nodes};
 use crate::lanes::{Lanes, Real};
 use crate::linear::bordered::BorderRow;
@@ -200,10 +200,15 @@ impl<'a> Motion<'a> {
 
     /// Turns of the nodes, for a tangent that turns with them.
     pub fn turns(&self) -> Turns {
-        Turns::new(self.coordinates() / 4, self.still())
+        Turns::new(self.coordinates() / 4, self.still(), self.turning_pairs())
     }
 
-    /// Nodes with which a tangent is not turned: a fixed component of a position must keep its
+    /// Pairs of unknowns that turn with a tangent while their nodes do not.
+    pub fn turning_pairs<T: Real>(&self) -> PairTurns<T> {
+        PairTurns::new(self.system.turning_pairs())
+    }
+
+    /// Nodes with which a tangent is not turned as a whole: a fixed component of a position must keep its
     /// axis, and polar gradients contain the turn themselves.
     pub fn still(&self) -> Vec<usize> {
         self.system.supports().half_fixed().chain(self.system.polar().nodes()).collect()
@@ -332,8 +337,10 @@ impl<'a> Motion<'a> {
         negative: &mut [f64],
     ) -> f64 {
         let scale = self.balance(x, rates, negative);
-        let turns = turns.of_nodes();
-        negate(self.system, scale, negative, |node, force| turns[node].back(force))
+        let of_nodes = turns.of_nodes();
+        let residual = negate(self.system, scale, negative, |node, force| of_nodes[node].back(force));
+        turns.of_pairs().back(negative);
+        residual
     }
 
     /// Writes M a + f(q) + Bᵀμ and g; returns the largest force apart from inertia.
@@ -630,6 +637,7 @@ impl<'a> Motion<'a> {
     pub fn update(&self, turns: &Turns, increment: &mut [f64], x: &mut [f64]) -> f64 {
         // Turns in the plane commute: the order does not matter.
         self.from_frames(increment);
+        turns.of_pairs().forth(increment);
         let n = self.coordinates();
         let nodes = [&mut increment[..n], &mut x[..n]].map(|vector| vector.as_chunks_mut::<4>().0);
         let largest = threads::over(

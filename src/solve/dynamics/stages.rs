@@ -8,7 +8,7 @@
 
 use super::State;
 use super::motion::{Acceleration, Motion, Rates};
-use super::turns::Turn;
+use super::turns::{PairTurns, Turn};
 use crate::lanes::{self, Lanes};
 use crate::solve::equilibrium::{self, larger};
 use nalgebra::DMatrix;
@@ -110,11 +110,12 @@ pub struct Stages {
     /// Turns of the nodes since the tangent was taken.
     turns: Vec<Turn<Lanes>>,
     still: Vec<usize>,
+    pairs: PairTurns<Lanes>,
 }
 
 impl Stages {
-    /// For `n` coordinates of `unknowns`; the nodes `still` do not turn.
-    pub fn new(n: usize, unknowns: usize, damped: bool, still: Vec<usize>) -> Self {
+    /// For `n` coordinates of `unknowns`; the nodes `still` do not turn as a whole.
+    pub fn new(n: usize, unknowns: usize, damped: bool, still: Vec<usize>, pairs: PairTurns<Lanes>) -> Self {
         Self {
             displacement: vec![Lanes::ZERO; unknowns],
             x: vec![Lanes::ZERO; unknowns],
@@ -123,6 +124,7 @@ impl Stages {
             residual: vec![Lanes::ZERO; unknowns],
             turns: vec![Turn::none(); n / 4],
             still,
+            pairs,
         }
     }
 
@@ -149,6 +151,7 @@ impl Stages {
 
     /// Measures how far every node has turned since `at`.
     pub fn measure_turns(&mut self, at: &[f64]) {
+        self.pairs.measure(at, &self.x);
         let nodes = self.x.as_chunks::<4>().0.iter().zip(at.as_chunks::<4>().0);
         for (turn, (x, start)) in self.turns.iter_mut().zip(nodes) {
             *turn = Turn::between([start[2], start[3]].map(Lanes::splat), [x[2], x[3]]);
@@ -161,6 +164,7 @@ impl Stages {
     /// Turns the residual back to where the tangent was taken, combines the stages and writes them
     /// to `rows`.
     pub fn take_apart(&mut self, mixture: &Mixture, rows: &mut [Vec<f64>]) {
+        self.pairs.back(&mut self.residual);
         let nodes = self.residual.as_chunks_mut::<4>().0;
         for (turn, node) in self.turns.iter().zip(nodes) {
             turn.back(node);
@@ -179,6 +183,7 @@ impl Stages {
             turn.forth(node);
         }
         self.residual[4 * self.turns.len()..].iter_mut().for_each(|r| *r = mixture.of(*r));
+        self.pairs.forth(&mut self.residual);
     }
 
     /// Adds the increments to the displacements.
@@ -202,7 +207,8 @@ impl Stages {
 impl Motion<'_> {
     /// Room for the stages of a collocation method.
     pub fn stages(&self) -> Stages {
-        Stages::new(self.coordinates(), self.unknowns(), self.needs_velocity() || self.carries, self.still())
+        let damped = self.needs_velocity() || self.carries;
+        Stages::new(self.coordinates(), self.unknowns(), damped, self.still(), self.turning_pairs())
     }
 
     /// [`Self::residual`] of the first `count` stages of a step, at their `times`: writes all of

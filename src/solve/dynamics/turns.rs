@@ -5,6 +5,9 @@
 //! diag(R(φ_i)) over the pairs (x, y) and (x', y') of the nodes, R K Rᵀ is K at q apart from the
 //! change of stress and shape. So a residual is turned back by Rᵀ, the equations are solved with
 //! the old factorisation, and the increment is turned forth by R.
+//!
+//! A polar gradient (y, θ) has the turn in θ: it stays as it is, and the position of its node turns by the change of θ. In a weld both
+//! nodes turn by the same angle, and with them the force that it transmits ([`PairTurns`]).
 
 use crate::lanes::{Pair, Real, cross, dot};
 use crate::threads;
@@ -30,23 +33,75 @@ impl<T: Real> Turn<T> {
         Self { cosine: cosine * inverse, sine: sine * inverse }
     }
 
+    /// By an angle \[rad\].
+    fn by(angle: T) -> Self {
+        let (sine, cosine) = angle.sin_cos();
+        Self { cosine, sine }
+    }
+
+    /// The opposite turn.
+    #[inline(always)]
+    fn reversed(&self) -> Self {
+        Self { cosine: self.cosine, sine: -self.sine }
+    }
+
+    /// R of one pair.
+    #[inline(always)]
+    fn of_pair(&self, [x, y]: Pair<T>) -> Pair<T> {
+        let Self { cosine, sine } = *self;
+        [cosine.fma(x, -(sine * y)), cosine.fma(y, sine * x)]
+    }
+
     /// R v.
     #[inline(always)]
     pub fn forth(&self, v: &mut [T; 4]) {
-        let Self { cosine, sine } = *self;
         let [a, b, c, d] = *v;
-        *v = [
-            cosine.fma(a, -(sine * b)),
-            cosine.fma(b, sine * a),
-            cosine.fma(c, -(sine * d)),
-            cosine.fma(d, sine * c),
-        ];
+        let [[a, b], [c, d]] = [[a, b], [c, d]].map(|pair| self.of_pair(pair));
+        *v = [a, b, c, d];
     }
 
     /// Rᵀ v.
     #[inline(always)]
     pub fn back(&self, v: &mut [T; 4]) {
-        Self { cosine: self.cosine, sine: -self.sine }.forth(v);
+        self.reversed().forth(v);
+    }
+}
+
+/// Pairs of unknowns that turn as an unknown direction θ does.
+#[derive(Clone, Debug)]
+pub struct PairTurns<T> {
+    /// The unknown θ, and the first unknown of the pair.
+    pairs: Vec<[usize; 2]>,
+    turns: Vec<Turn<T>>,
+}
+
+impl<T: Real> PairTurns<T> {
+    /// No turn of any of the `pairs`: the unknown θ and the first unknown of each.
+    pub fn new(pairs: Vec<[usize; 2]>) -> Self {
+        Self { turns: vec![Turn::none(); pairs.len()], pairs }
+    }
+
+    /// Measures the turns from `q0` to `q`.
+    pub fn measure(&mut self, q0: &[f64], q: &[T]) {
+        for (turn, [direction, _]) in self.turns.iter_mut().zip(&self.pairs) {
+            *turn = Turn::by(q[*direction] - T::of(q0[*direction]));
+        }
+    }
+
+    /// R v, of all unknowns.
+    pub fn forth(&self, v: &mut [T]) {
+        self.each(v, |turn, pair| turn.of_pair(pair));
+    }
+
+    /// Rᵀ v, of all unknowns.
+    pub fn back(&self, v: &mut [T]) {
+        self.each(v, |turn, pair| turn.reversed().of_pair(pair));
+    }
+
+    fn each(&self, v: &mut [T], turned: impl Fn(&Turn<T>, Pair<T>) -> Pair<T>) {
+        for (turn, [_, first]) in self.turns.iter().zip(&self.pairs) {
+            [v[*first], v[first + 1]] = turned(turn, [v[*first], v[first + 1]]);
+        }
     }
 }
 
@@ -56,16 +111,18 @@ pub struct Turns {
     turns: Vec<Turn<f64>>,
     /// Nodes that do not turn: a fixed component of a position must keep its axis.
     still: Vec<usize>,
+    pairs: PairTurns<f64>,
 }
 
 impl Turns {
-    /// No turn of any of `nodes` nodes; those of `still` never turn.
-    pub fn new(nodes: usize, still: Vec<usize>) -> Self {
-        Self { turns: vec![Turn::none(); nodes], still }
+    /// No turn of any of `nodes` nodes; those of `still` never turn as a whole.
+    pub fn new(nodes: usize, still: Vec<usize>, pairs: PairTurns<f64>) -> Self {
+        Self { turns: vec![Turn::none(); nodes], still, pairs }
     }
 
     /// Measures the turns from `q0` to `q`.
     pub fn measure(&mut self, q0: &[f64], q: &[f64]) {
+        self.pairs.measure(q0, q);
         let (q, q0) = (q.as_chunks::<4>().0, q0.as_chunks::<4>().0);
         threads::each([&mut self.turns[..]], &|range, [turns]| {
             for (turn, (x, start)) in turns.iter_mut().zip(q[range.clone()].iter().zip(&q0[range])) {
@@ -82,13 +139,20 @@ impl Turns {
         &self.turns
     }
 
-    /// R v.
+    /// The turns beside those of whole nodes.
+    pub fn of_pairs(&self) -> &PairTurns<f64> {
+        &self.pairs
+    }
+
+    /// R v, of all unknowns.
     pub fn forth(&self, v: &mut [f64]) {
+        self.pairs.forth(v);
         self.turns.iter().zip(v.as_chunks_mut::<4>().0).for_each(|(turn, v)| turn.forth(v));
     }
 
-    /// Rᵀ v.
+    /// Rᵀ v, of all unknowns.
     pub fn back(&self, v: &mut [f64]) {
+        self.pairs.back(v);
         self.turns.iter().zip(v.as_chunks_mut::<4>().0).for_each(|(turn, v)| turn.back(v));
     }
 }

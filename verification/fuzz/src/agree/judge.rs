@@ -135,6 +135,8 @@ const ENOUGH: usize = 8;
 /// follow from differences of positions, and one of ten for beams that lie ten lengths from the
 /// origin.
 const OF_FORCES: f64 = 1e3;
+/// Ratio of the round-off of frequencies and critical loads to that of positions.
+const OF_EIGENVALUES: f64 = 10.0;
 
 /// Error of positions due to the round-off of the stretch, which the stiffest beam turns into a
 /// force.
@@ -261,7 +263,9 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         Some(_) => (wanted, FORCES.max(wanted)),
         None => (ALLOWED * wanted, FORCES.max(ALLOWED * wanted)),
     };
-    let places = places + round_off(scene);
+    // Round-off of the stiffness changes frequencies and critical loads by more than it moves an equilibrium.
+    let of_places = if modes { OF_EIGENVALUES } else { 1.0 } * round_off(scene);
+    let places = places + of_places;
     let all = all + OF_FORCES * round_off(scene);
     if gap.events && all.is_finite() && gap.places <= places && gap.all.value <= all {
         if !neighbour::keeps_events(scene, frame, a, rng) {
@@ -348,7 +352,7 @@ fn approximate(case: &Case, way: Way, base: &Seen, rng: &mut Rng) -> Verdict {
             what: "a position or an eigenvalue".to_owned(),
         };
         Ok(match way {
-            Way::Count => places(gap.places, ALLOWED * EIGENVALUES + 10.0 * round_off(scene)),
+            Way::Count => places(gap.places, ALLOWED * EIGENVALUES + OF_EIGENVALUES * round_off(scene)),
             Way::FixedStep => {
                 let third = ways::half_steps(&changed).ok_or(Verdict::NotApplicable)?;
                 let finest = other(&third, frame, way)?;
