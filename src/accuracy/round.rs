@@ -188,13 +188,15 @@ impl<'a, 'o> Runner<'a, 'o> {
             _ => (FIRST_CELLS_OF_MODES_DO / result).powf(FIRST_CELLS_OF_MODES),
         };
         let mut meshes = Mesh::first(model, waves, times);
-        let named = |(beam, mesh): (&Beam, &Mesh)| {
+        // The nodes of the run, some of which move to where one must be.
+        let named = |(index, mesh): (usize, &Mesh)| {
+            let beam = &model.beams[index];
             let curve =
                 Curve::new(&beam.centreline).ok().filter(|_| beam.discretization != Discretization::Open)?;
             let nodes = Discretization::Ancf { nodes: beam.discretization.nodes().clone() };
-            Some(mesh.with(Basis::new(&nodes, curve.length()).ok()?.nodes()))
+            Some(mesh.with(Basis::broken(&nodes, curve.length(), &model.breaks(index)).ok()?.nodes()))
         };
-        let named: Vec<Option<Mesh>> = model.beams.iter().zip(&meshes).map(named).collect();
+        let named: Vec<Option<Mesh>> = meshes.iter().enumerate().map(named).collect();
         let pointed = |(index, named): (usize, &Option<Mesh>)| {
             named.as_ref().is_some_and(|named| has_points(model, index, named))
         };

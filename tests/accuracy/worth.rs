@@ -431,6 +431,39 @@ fn the_strain_at_an_end_of_a_meshfree_bar_errs_by_as_much_as_beside_it() {
     }
 }
 
+/// So it is at a clamp, which a force of 4 N along the beam of 50 N strains by 0.08 whatever the bending is.
+#[test]
+fn the_strain_at_the_clamp_of_a_meshfree_beam_errs_by_as_much_as_beside_it() {
+    for nodes in [24, 60] {
+        let pull = "effect.force = [{ beam = 'arm', at = 'end', value = [4, -3] }]\nanalysis.static = {}";
+        let basis = format!("basis.rpim.nodes = {nodes}, mass_per");
+        let text = cantilever(50.0, 1.0, pull).replace("mass_per", &basis);
+        let scene =
+            scene(&text.replace("'tip', beam = 'arm', at = 'end'", "'clamp', beam = 'arm', at = 'start'"));
+        let known =
+            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let truth = (last(&known).strain - 0.08).abs();
+        let told = error(&known).probes[0].samples.last().expect("a state").strain;
+        assert!(truth > 1e-5 && truth <= 3.0 * told, "{nodes}: {truth:e} for {told:e}");
+    }
+}
+
+/// Of three even elements one node moves to where a couple acts, and leaves one element behind it that is as long in a coarser mesh. The
+/// judge is the boundary-value problem of both parts, by SciPy's `solve_bvp` to ten digits.
+#[test]
+fn errors_where_a_couple_moves_a_node_are_seen() {
+    let rest = "effect.moment = [{ beam = 'arm', at = 0.4318, value = 3.5341 }]\n\
+                effect.force = [{ beam = 'arm', at = 'end', value = [-0.0831, -0.569] }]\nanalysis.static = {}";
+    let text = cantilever(1e3, 1.0, rest).replace("mass_per", "basis.ancf.elements = 3, mass_per");
+    let scene = scene(&text);
+    let known =
+        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+    let found = last(&known);
+    let truth = (found.x - 0.310_244_9).hypot(found.y - 0.835_212_1);
+    let worth = truth / error(&known).estimated.result;
+    assert!(truth > 0.02 && (0.1..=3.0).contains(&worth), "{truth}: {worth}");
+}
+
 /// One element cannot be made coarser, and the halves of an odd number are not its halves. Many elements are the judge.
 #[test]
 fn errors_of_a_few_named_elements_are_seen() {

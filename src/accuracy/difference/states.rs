@@ -253,12 +253,17 @@ fn sample(shape: &Shape, k: usize) -> Option<ProbeSample> {
 /// Directions err by waves within each cell, which have another phase in other cells: by what they do on either side.
 fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, beam: &Beam) -> ProbeSample {
     let differ_at = |k: usize| Some(differ(&sample(coarse, k)?, &sample(fine, k)?));
-    let after = fine.s.partition_point(|place| *place < s);
-    let Some((before, after)) = after.checked_sub(1).and_then(differ_at).zip(differ_at(after)) else {
-        return seen;
-    };
-    // Meshfree shape functions strain alike in all meshes at an end, and a place before it tells.
+    let next = fine.s.partition_point(|place| *place < s);
+    let [before, after] = [next.checked_sub(1), Some(next)].map(|k| k.and_then(differ_at));
+    // Meshfree shape functions strain alike in all meshes at an end, and a place beside it tells.
     let meshfree = matches!(beam.discretization, Discretization::Rpim { .. });
+    let (Some(before), Some(after)) = (before, after) else {
+        let Some(beside) = before.or(after) else { return seen };
+        let strain = if meshfree { larger(seen.strain, beside.strain) } else { seen.strain };
+        let within = s > 0.0 && seen.angle > 0.0;
+        let angle = if within { larger(seen.angle, within_half_a_turn(beside.angle)) } else { seen.angle };
+        return ProbeSample { strain, angle, ..seen };
+    };
     let at_end = meshfree && fine.s.last().is_some_and(|end| *end <= s);
     let strain = if at_end { before.strain } else { before.strain.min(after.strain) };
     let [left, right] = [before.angle, after.angle].map(within_half_a_turn);
