@@ -128,6 +128,11 @@ impl Tabulated {
         Some(Self::new(times, values, false)?.smoothed(ends))
     }
 
+    /// Where its points are \[s\], or \[m\] along a beam.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
     fn smoothed(self, ends: [End; 2]) -> Self {
         let h: Vec<f64> = self.times.windows(2).map(|t| t[1] - t[0]).collect();
         let slope: Vec<[f64; 1]> =

@@ -140,7 +140,7 @@ pub struct Run {
     pub outlines: Vec<Vec<[f64; 2]>>,
     /// Warnings for the user: instabilities met, with the load factor.
     pub warnings: Vec<String>,
-    /// Whether a force field changes within cells by more than their points see.
+    /// Whether a force field changes within cells by more than their points see, or a velocity at the start by more than they follow.
     #[serde(skip)]
     pub misses_fields: bool,
     /// The tensions at the end of the tendons whose lengths are given.

@@ -22,6 +22,7 @@ mod steps;
 mod strings;
 mod surfaces;
 mod tendons;
+mod velocities;
 
 pub use error::RunError;
 pub(crate) use laws::stiffness_jumps;

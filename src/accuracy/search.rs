@@ -67,8 +67,8 @@ const MUTE_LOAD_STEPS: &str = "with twice the `max_step` there are hardly fewer 
 const TOO_MANY_LOAD_STEPS: &str =
     "friction depends on the path, of which more than 2,500 load steps would be needed";
 /// Why a load is not known.
-const FIELD: &str = "a force field changes within the cells of its beam by more than their points see; name a `basis` with nodes where it acts, or \
-                     let it be smoother";
+const FIELD: &str = "a force field, or a velocity at the start, changes within the cells of its beam by more than they see; name a `basis` with \
+                     nodes where it does, or let it be smoother";
 /// What an accuracy means along a path.
 const LAST_POINT: &str = "the error is that of the last point of the path: each run takes points of its own, and of those before nothing is known";
 /// Why nothing can be refined.

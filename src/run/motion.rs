@@ -2,6 +2,7 @@
 
 use super::sampler::Sampler;
 use super::shapes::acting;
+use super::velocities;
 use super::{Options, RunError, Solve, Stopwatch, Watch, left, memory, needs, timed};
 use crate::model::{Analysis, Dynamic, Model};
 use crate::restart::{self, SavedState};
@@ -28,7 +29,7 @@ impl Solve for Dynamic {
         let model = &*model;
         memory::check(model, &analysis)?;
         let mut system = System::build_with(model, needs(&analysis), options.cache)?;
-        let Beginning { start, end, motion, told, brought } =
+        let Beginning { start, end, motion, told, brought, missed } =
             beginning(model, self, &mut system, options.start)?;
         let taken_up = (options.states && options.start.is_some()).then(|| TakenUp {
             model: Arc::new(model.clone()),
@@ -95,6 +96,8 @@ impl Solve for Dynamic {
             }
             trajectory.states = kept.filter(|_| options.states);
             trajectory.run.warnings.extend(brought);
+            trajectory.run.misses_fields |= !missed.is_empty();
+            trajectory.run.warnings.extend(missed);
             trajectory.run.warnings.extend(thrown);
             trajectory.run.settings.extend(told.map(|told| ("continued".into(), told)));
         }
@@ -113,6 +116,8 @@ struct Beginning {
     told: Option<String>,
     /// Warnings about energy that it has and the saved state had not.
     brought: Vec<String>,
+    /// Warnings about velocities that cells do not follow.
+    missed: Vec<String>,
 }
 
 /// Where a motion begins. If it starts from a saved state, supports without a law of time fix the
@@ -128,7 +133,8 @@ fn beginning(
         let start = start::from_rest(system, &model.initial_velocities)?;
         let end = settings.duration;
         start::check_jumps(system, 0.0, end)?;
-        return Ok(Beginning { start, end, motion, told: None, brought: Vec::new() });
+        let missed = velocities::missed(model, system);
+        return Ok(Beginning { start, end, motion, told: None, brought: Vec::new(), missed });
     };
     let (start, same) = saved.take_up(model, system, &motion)?;
     let brought = match same {
@@ -154,13 +160,14 @@ fn beginning(
         false => "from its positions and velocities alone, for the model or the integrator is another",
     };
     let idle = !model.initial_velocities.is_empty() && (same || !saved.is_equilibrium());
-    let idle = if idle {
+    let adds = if idle {
         "; `initial_velocity` belongs to the start of a motion, and adds nothing to one that is under way"
     } else {
         ""
     };
-    let told = format!("for {} s from t = {begin} s to {end} s, {how}{idle}", settings.duration);
-    Ok(Beginning { start, end, motion, told: Some(told), brought })
+    let told = format!("for {} s from t = {begin} s to {end} s, {how}{adds}", settings.duration);
+    let missed = if idle { Vec::new() } else { velocities::missed(model, system) };
+    Ok(Beginning { start, end, motion, told: Some(told), brought, missed })
 }
 
 /// A warning where other masses than those of the saved state, which had the energy `before` \[J\], move in `state`.
