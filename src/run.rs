@@ -4,6 +4,7 @@ mod electrodes;
 mod error;
 mod events;
 mod fields;
+mod imbalance;
 mod laws;
 mod locking;
 mod loose;

@@ -7,7 +7,7 @@ use super::loose::Loose;
 use super::stability;
 use super::tendons::Tendons;
 use super::{Detail, RunError};
-use super::{fields, steps, strings, surfaces};
+use super::{fields, imbalance, steps, strings, surfaces};
 use crate::assembly::{Actions, BuildError, InternalVariables, Kind, Side, TendonPath, nodes, remaining};
 use crate::linear::Singular;
 use crate::model::{
@@ -681,6 +681,7 @@ impl<'a> Sampler<'a> {
             trajectory.run.tensions = tendons.tensions(known.map(|(tension, _)| tension));
             let actions = self.system.static_actions(*load, x, variables);
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
+            trajectory.run.warnings.extend(imbalance::out_of_balance(self.system, *load, x, variables));
         }
         let states = [solution.states.first(), solution.states.last()].into_iter().flatten();
         let states: Vec<(&[f64], f64)> = states.map(|(_, x)| (self.coordinates_of(x), 0.0)).collect();

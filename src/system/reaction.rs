@@ -90,13 +90,29 @@ impl System {
 
     /// Forces of supports on the fixed coordinates in equilibrium, in fixed axes.
     pub fn static_support_forces(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<f64> {
+        let mut force = self.static_forces(load, x, variables);
+        self.supports.keep_fixed(load, &mut force);
+        force
+    }
+
+    /// What is left of all forces but those of supports on fixed coordinates, in fixed axes: in equilibrium these are their opposites, and
+    /// zero on free coordinates.
+    fn static_forces(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<f64> {
         let (q, multipliers) = x.split_at(self.coordinates());
         let mut force = vec![0.0; q.len()];
         self.force(load, q, &mut force);
         self.add_known_history(variables, q, &mut force);
         self.add_constraint_forces(load, q, multipliers, &mut force);
-        self.supports.keep_fixed(load, &mut force);
         force
+    }
+
+    /// What is left of the forces on free coordinates in a state that counts as an equilibrium, in fixed axes.
+    pub fn imbalance(&self, load: f64, x: &[f64], variables: &InternalVariables) -> Vec<f64> {
+        let mut left = self.static_forces(load, x, variables);
+        let mut fixed = left.clone();
+        self.supports.keep_fixed(load, &mut fixed);
+        left.iter_mut().zip(&fixed).for_each(|(left, fixed)| *left -= fixed);
+        left
     }
 
     /// The energies \[J\] of the contacts with obstacles in the state `q`, each with the number of its part and the index of its

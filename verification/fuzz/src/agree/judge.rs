@@ -263,10 +263,11 @@ fn exact(case: &Case, way: Way, base: &Outcome, rng: &mut Rng) -> Verdict {
         Some(_) => (wanted, FORCES.max(wanted)),
         None => (ALLOWED * wanted, FORCES.max(ALLOWED * wanted)),
     };
-    // Round-off of the stiffness changes frequencies and critical loads by more than it moves an equilibrium.
-    let of_places = if modes { OF_EIGENVALUES } else { 1.0 } * round_off(scene);
-    let places = places + of_places;
-    let all = all + OF_FORCES * round_off(scene);
+    // Round-off of the stiffness changes frequencies and critical loads by more than it moves an equilibrium, and all forces of what
+    // nothing loads are round-off.
+    let round_off = if modes { OF_EIGENVALUES } else { 1.0 } * round_off(scene);
+    let places = places + round_off;
+    let all = all + OF_FORCES * round_off;
     if gap.events && all.is_finite() && gap.places <= places && gap.all.value <= all {
         if !neighbour::keeps_events(scene, frame, a, rng) {
             return Verdict::Unstable;
