@@ -3,6 +3,7 @@
 mod bent;
 mod kinks;
 mod laid_out;
+mod layers;
 mod modes;
 mod places;
 mod section_forces;
@@ -18,6 +19,7 @@ use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Results};
 pub(super) use bent::{bent, defects};
 pub(super) use kinks::kink;
 pub(super) use laid_out::laid_out;
+pub(super) use layers::{Layer, layers};
 use modes::modes;
 pub(super) use modes::round_off;
 pub(super) use states::jumps;

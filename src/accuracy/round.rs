@@ -2,7 +2,7 @@
 
 mod unseen;
 
-use super::difference::{self, Difference, StrainJump, jumps_of_modes, stations, stiffness_jumps};
+use super::difference::{self, Difference, Layer, StrainJump, jumps_of_modes, stations, stiffness_jumps};
 use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
 use super::saturation::{ends_prevail, has_uneven_cells, saturates};
@@ -145,6 +145,8 @@ pub(super) struct Round {
     pub unseen: Option<Difference>,
     /// Where in open beams the strain jumps, with the part of it that shorter cells there would make smaller.
     pub jumps: Vec<StrainJump>,
+    /// Layers at ends of beams that cells do not show.
+    pub layers: Vec<Layer>,
     /// Where forces pass corners of laws, in all states that rest.
     pub corners: Vec<Place>,
     /// By which factor the difference has fallen, where there was a third run.
@@ -450,6 +452,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             }
         };
         let mut jumps = self.stiffness_jumps(beside.as_ref());
+        let mut layers = Vec::new();
         let round_off = difference::round_off(&results);
         let both = |a: Option<Difference>, b: Option<Difference>| match (a, b) {
             (Some(a), Some(b)) => a.plus(&b),
@@ -470,6 +473,10 @@ impl<'a, 'o> Runner<'a, 'o> {
             if let Some((errors, places)) = difference::strain_jumps(self.model, &nodes, run, difference) {
                 unseen = both(unseen, Some(errors));
                 jumps.extend(places.into_iter().filter(|jump| self.is_open(jump.beam)));
+            }
+            if let Some((errors, found)) = difference::layers(self.model, &nodes, run, difference) {
+                unseen = both(unseen, Some(errors));
+                layers = found;
             }
         }
         if let (Ok(difference), Results::Trajectory(run)) = (&difference, &results) {
@@ -494,6 +501,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             difference,
             unseen,
             jumps,
+            layers,
             corners,
             fall,
             cells,
@@ -601,6 +609,7 @@ pub(super) mod tests {
             difference,
             unseen: None,
             jumps: Vec::new(),
+            layers: Vec::new(),
             corners: Vec::new(),
             fall: None,
             cells,

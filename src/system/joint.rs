@@ -100,14 +100,21 @@ fn table(system: &System, order: usize, place: Place) -> Result<(BasisTable, usi
 /// a support fixes something of the gradient.
 pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, BuildError> {
     let fixed: Vec<usize> = system.supports.eliminated().map(|i| i / 2).collect();
-    let (mut pairs, mut welds) = (Vec::new(), Vec::new());
+    let (mut pairs, mut welds, mut sliders) = (Vec::new(), Vec::new(), Vec::new());
     let node = |place: Place| {
         let (part, s) = system.part("a joint", place)?;
         Ok(part.basis.node_at(s).map(|node| part.first_node + node))
     };
     let of_joints = &system.sources[system.sources.len() - joints.len()..];
     for (joint, rows) in joints.iter().zip(of_joints) {
-        let Joint::Weld { first, second } = *joint else { continue };
+        let (first, second) = match *joint {
+            Joint::Weld { first, second } => (first, second),
+            Joint::Slider { at, .. } => {
+                sliders.extend(node(at)?);
+                continue;
+            }
+            Joint::Hinge { .. } => continue,
+        };
         let nodes = transpose([node(first), node(second)])?;
         pairs.extend(nodes.iter().flatten().map(|node| 2 * node + 1));
         if let ([Some(first), Some(second)], Source::Rows(rows)) = (nodes, rows) {
@@ -115,5 +122,5 @@ pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, BuildErr
         }
     }
     pairs.retain(|pair| !fixed.contains(pair));
-    Ok(Polar::new(pairs, welds))
+    Ok(Polar::new(pairs, welds, sliders))
 }

@@ -25,6 +25,8 @@ pub struct Polar {
     pairs: Vec<usize>,
     /// The nodes of each weld, and the first of its rows, which are those of its position.
     welds: Vec<([usize; 2], usize)>,
+    /// The nodes of sliders, whose rows have a direction that does not turn.
+    sliders: Vec<usize>,
 }
 
 /// The columns e and y n of P for the gradient (x, y).
@@ -42,11 +44,12 @@ fn of(v: &mut [f64], pair: usize) -> &mut [f64; 2] {
 }
 
 impl Polar {
-    /// Polar coordinates for the given pairs, which are at the nodes of these welds, with the first row of each.
-    pub fn new(mut pairs: Vec<usize>, welds: Vec<([usize; 2], usize)>) -> Self {
+    /// Polar coordinates for the given pairs, which are at the nodes of these welds, with the first row of each. Others are nodes of
+    /// sliders.
+    pub fn new(mut pairs: Vec<usize>, welds: Vec<([usize; 2], usize)>, sliders: Vec<usize>) -> Self {
         pairs.sort_unstable();
         pairs.dedup();
-        Self { pairs, welds }
+        Self { pairs, welds, sliders }
     }
 
     /// Whether there are no such pairs.
@@ -123,11 +126,11 @@ impl System {
     }
 
     /// Pairs of unknowns that turn as a welded node does, whose direction θ is an unknown: θ, and the first of the pair. They are the
-    /// position of the node, and the force in the weld. A node of which a support fixes one component of the position keeps its axes,
-    /// and so do those that are welded to it.
+    /// position of the node, and the force in the weld. A node of which a support or a slider fixes one component of the position keeps
+    /// its axes, and so do those that are welded to it.
     pub fn turning_pairs(&self) -> Vec<[usize; 2]> {
-        let Polar { pairs, welds } = &self.polar;
-        let mut still: Vec<usize> = self.supports.half_fixed().collect();
+        let Polar { pairs, welds, sliders } = &self.polar;
+        let mut still: Vec<usize> = self.supports.half_fixed().chain(sliders.iter().copied()).collect();
         let turns = |still: &[usize], node: &usize| {
             !still.contains(node) && pairs.binary_search(&(2 * node + 1)).is_ok()
         };
@@ -169,7 +172,7 @@ mod tests {
     #[test]
     fn rates_are_derivatives() {
         // y = 1.1 + 0.3 t − 0.2 t², θ = 2 + 1.7 t + 0.4 t².
-        let polar = Polar::new(vec![1, 1], Vec::new());
+        let polar = Polar::new(vec![1, 1], Vec::new(), Vec::new());
         let at = |t: f64| {
             let mut q = [5.0, 6.0, 1.1 + 0.3 * t - 0.2 * t * t, 2.0 + 1.7 * t + 0.4 * t * t];
             let (mut v, mut a) = ([7.0, 8.0, 0.3 - 0.4 * t, 1.7 + 0.8 * t], [0.0, 9.0, -0.4, 0.8]);
@@ -192,10 +195,10 @@ mod tests {
     }
 
     /// Four beams begin in one point: the first is hinged to the second, and the others are welded to that. Both unknowns of a position
-    /// and of the force of each weld turn, unless a support holds one component of one of the positions.
+    /// and of the force of each weld turn, unless a support or a slider holds one component of one of the positions.
     #[test]
     fn positions_and_forces_turn_with_welded_nodes() {
-        let of = |held: Option<usize>| {
+        let of = |held: Option<usize>, slides: Option<usize>| {
             let beam = |end: [f64; 2]| {
                 let section = Section { mass_per_length: Some(1.0.into()), ..Section::new(1.0, 1.0) };
                 Beam::line("arm", [0.0, 0.0], end, section, Discretization::ancf(2))
@@ -207,18 +210,21 @@ mod tests {
             let model = Model {
                 beams: ends.map(beam).into(),
                 supports: supports.into_iter().collect(),
-                joints: vec![
+                joints: [
                     Joint::Hinge { first: at(0), second: at(1) },
                     Joint::Weld { first: at(1), second: at(2) },
                     Joint::Weld { first: at(2), second: at(3) },
-                ],
+                ]
+                .into_iter()
+                .chain(slides.map(|beam| Joint::Slider { at: at(beam), along: [1.0, 1.0] }))
+                .collect(),
                 ..Model::default()
             };
             System::build(&model, Needs { inertia: true, motion: true }).expect("a system").turning_pairs()
         };
         // Nodes 2, 4 and 6, and the two rows of each weld behind those of the hinge.
-        assert_eq!(of(None), [[11, 8], [19, 16], [27, 24], [11, 34], [19, 37]]);
-        assert!(of(Some(3)).is_empty());
-        assert_eq!(of(Some(0)).len(), 5);
+        assert_eq!(of(None, None), [[11, 8], [19, 16], [27, 24], [11, 34], [19, 37]]);
+        assert!(of(Some(3), None).is_empty() && of(None, Some(2)).is_empty());
+        assert_eq!(of(Some(0), None).len(), 5);
     }
 }

@@ -2,7 +2,7 @@
 //! point, where errors of the first order are beside others that fall faster, or where all meshes err alike.
 
 use super::{Purpose, Round, Runner, coarser, short};
-use crate::accuracy::difference::{self, Difference, StrainJump, fixed_gradients, is_path};
+use crate::accuracy::difference::{self, Difference, Layer, StrainJump, fixed_gradients, is_path};
 use crate::accuracy::mesh::Mesh;
 use crate::accuracy::saturation::is_uneven;
 use crate::accuracy::setting::{Family, Setting, Solver};
@@ -212,6 +212,19 @@ impl Runner<'_, '_> {
             }
         }
         Ok(any)
+    }
+
+    /// Cells of half the length of layers at the ends of open beams, where these hide more of the curvature than a part of what is
+    /// `wanted`; whether there are any.
+    pub fn resolve(&mut self, layers: &[Layer], wanted: Option<f64>) -> bool {
+        let wanted = wanted.unwrap_or(f64::INFINITY);
+        let hide = |layer: &&Layer| layer.error > AT_JUMPS * wanted && self.is_open(layer.beam);
+        let hidden: Vec<Layer> = layers.iter().filter(hide).copied().collect();
+        for Layer { beam, end, length, .. } in &hidden {
+            let others = self.short[*beam].iter().copied().filter(|[place, _]| place != end);
+            self.short[*beam] = others.chain([[*end, 0.5 * length]]).collect();
+        }
+        !hidden.is_empty()
     }
 
     /// What is to be done about the largest of some jumps.

@@ -567,9 +567,13 @@ impl<'t, 'a> Driver<'t, 'a> {
         let fastest = nodes(&self.state.v).fold(0.0_f64, |largest, node| largest.max(node.shift()));
         let slowest = self.system.lowest_vibration_scale().sqrt().recip();
         let ahead = slowest.min(self.system.length() / fastest);
+        // An error of a position is one of h⁻¹ times the size of the velocity, which moves all that follows; those of several steps add
+        // up as independent ones do, or in proportion to their number.
+        let steps = (until.max(ahead) / h).max(FEWEST_STEPS);
         Allowed {
             step: tolerance * STEP_PART.min(h / until),
-            iteration: tolerance.min(LOOSEST) * (until.max(ahead) / h).max(FEWEST_STEPS).powf(-1.5),
+            iteration: tolerance.min(LOOSEST) * steps.powf(-1.5),
+            one_sided: tolerance.min(LOOSEST) * steps.powi(-2),
         }
     }
 

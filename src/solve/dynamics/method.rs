@@ -15,6 +15,8 @@ pub struct Allowed {
     pub step: f64,
     /// Of the positions, because its equations are solved by an iteration that stops.
     pub iteration: f64,
+    /// The same where what is left has one sign in all steps, as the excess ½ |δ|² of a length that an increment δ makes.
+    pub one_sided: f64,
 }
 
 /// Part by which a step is shorter than the one that was given and is still that step.

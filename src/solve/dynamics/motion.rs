@@ -214,6 +214,11 @@ impl<'a> Motion<'a> {
         self.system.supports().half_fixed().chain(self.system.polar().nodes()).collect()
     }
 
+    /// Whether lengths are kept, whose rows are quadratic in the coordinates.
+    pub fn keeps_lengths(&self) -> bool {
+        self.follows
+    }
+
     /// Number of coordinates.
     pub fn coordinates(&self) -> usize {
         self.system.coordinates()

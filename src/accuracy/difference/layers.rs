@@ -1,0 +1,89 @@
+//! Layers at the ends of tight beams that no cell shows.
+//!
+//! Under a tension N a beam bends otherwise than a string only within a few λ = √(EI/N) of an end, or of what acts in a point. At an end
+//! that turns freely its curvature falls from κ to nothing there, by κ e^(−d/λ) at the distance d, and its direction is off that of the
+//! string by κ λ e^(−d/λ). Where all cells are longer than λ every mesh has the curvature of the string up to the end, so that coarser
+//! meshes tell nothing of that.
+
+use super::{Difference, larger};
+use crate::model::{FixedRotation, Joint, Model, Place};
+use crate::results::{AnalysisKind, Trajectory};
+
+/// A layer at an end of a beam that is shorter than the cell there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::accuracy) struct Layer {
+    /// Index of the beam.
+    pub beam: usize,
+    /// The end, as an arc length \[m\].
+    pub end: f64,
+    /// λ \[m\].
+    pub length: f64,
+    /// By how much the curvature is off for it, as a part of the largest.
+    pub error: f64,
+}
+
+/// What results err by for layers that are shorter than the cells at the ends of beams with the `nodes` \[m\] given, in the records of
+/// another `difference`, and these layers; `None` where there are none.
+pub(in crate::accuracy) fn layers(
+    model: &Model,
+    nodes: &[Vec<f64>],
+    run: &Trajectory,
+    difference: &Difference,
+) -> Option<(Difference, Vec<Layer>)> {
+    if run.run.analysis != AnalysisKind::Static {
+        return None;
+    }
+    let (mut sum, mut found) = (difference.none(), Vec::new());
+    for (index, ((beam, nodes), shape)) in model.beams.iter().zip(nodes).zip(&run.last).enumerate() {
+        let (Some(bending), &[first, second, .., before, last]) =
+            (&beam.section.bending_stiffness, &nodes[..])
+        else {
+            continue;
+        };
+        for (end, cell, k) in
+            [(first, second - first, 0), (last, last - before, shape.s.len().saturating_sub(1))]
+        {
+            let values = (shape.axial_force.get(k).filter(|force| **force > 0.0), shape.curvature.get(k));
+            let (Some(tension), Some(curvature)) = values else { continue };
+            let layer = (bending.at(end, 0.5 * last) / tension).sqrt();
+            if layer >= cell || !turns_freely(model, index, end, last) {
+                continue;
+            }
+            let curvature = curvature.abs();
+            let of_largest = |scale: f64| if scale > 0.0 { curvature / scale } else { 0.0 };
+            let error = of_largest(difference.scales.curvature);
+            found.push(Layer { beam: index, end, length: layer, error });
+            sum.errors.curvature = sum.errors.curvature.map(|most| larger(most, error));
+            let off = curvature * layer * layer;
+            sum.errors.result = larger(sum.errors.result, off / last);
+            sum.records.iter_mut().for_each(|record| *record = larger(*record, off / last));
+            let left = |s: f64| (-(s - end).abs() / layer).exp();
+            if let Some(along) = sum.beams.get_mut(index) {
+                for ((s, position), bent) in along.s.iter().zip(&mut along.position).zip(&mut along.curvature)
+                {
+                    *position = larger(*position, off * (1.0 - left(*s)) / last);
+                    *bent = larger(*bent, curvature * left(*s));
+                }
+            }
+            let here = model.probes.iter().zip(&mut sum.probes).filter(|(probe, _)| probe.at.beam == index);
+            for (left, error) in
+                here.flat_map(|(probe, errors)| errors.samples.iter_mut().map(move |e| (left(probe.at.s), e)))
+            {
+                error.x = larger(error.x, off * (1.0 - left));
+                error.y = larger(error.y, off * (1.0 - left));
+                error.angle = larger(error.angle, curvature * layer * left);
+                error.curvature = larger(error.curvature, curvature * left);
+            }
+        }
+    }
+    (!found.is_empty()).then_some((sum, found))
+}
+
+/// Whether neither a support nor a joint holds the direction of a beam at its end.
+fn turns_freely(model: &Model, beam: usize, end: f64, length: f64) -> bool {
+    let here = |at: &Place| at.beam == beam && (at.s - end).abs() <= super::SAME * length;
+    let held = model.supports.iter().any(|s| s.fix.rotation != FixedRotation::Free && here(&s.at));
+    let weld = |joint: &&Joint| matches!(joint, Joint::Weld { .. });
+    let welded = model.joints.iter().filter(weld).flat_map(Joint::places).any(|at| here(&at));
+    !held && !welded
+}
