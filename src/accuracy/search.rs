@@ -376,7 +376,7 @@ impl<'a, 'o> Search<'a, 'o> {
             // The errors may be those of the steps, which nobody has seen.
             self.runner.tolerance = short((self.runner.tolerance / LOOSER).max(self.runner.finest()));
         }
-        let resolved = self.runner.resolve(&round.layers, wanted.curvature);
+        let resolved = self.runner.resolve(&round.layers, wanted);
         let graded = self.runner.grade(&round.jumps, wanted.result)? || resolved;
         if graded && times <= 1.0 {
             self.runner.take(self.runner.meshes.clone());

@@ -4,6 +4,9 @@ use crate::numeric::plain;
 use crate::solve::stability::{Stability, StabilityChange};
 use crate::solve::statics::{Solution, UnstableMechanism};
 
+/// Changes of stability that are told one by one.
+const MOST: usize = 8;
+
 /// What a static analysis has met on its way.
 pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
     let pressed = solution.pressed.map(|UnstableMechanism { load, unstable, free }| {
@@ -52,7 +55,18 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
         )
     });
     let others = [pressed, crest, start, unwatched, softened, returns].into_iter().flatten();
-    others.chain(solution.events.iter().map(of_change))
+    let (told, more) = solution.events.split_at(MOST.min(solution.events.len()));
+    let more = more.last().map(|last| {
+        let beyond = ": what the path ends in is no shape that the structure takes; a load that pushes it aside, and acts in a stage before, \
+                      leads to one";
+        format!(
+            "its stability changes {} more times, the last time at load factor {}{}",
+            more.len(),
+            plain(last.load, 6),
+            if last.after.is_unstable() { beyond } else { "" }
+        )
+    });
+    others.chain(told.iter().map(of_change)).chain(more)
 }
 
 /// What is said where directions lose or regain their stiffness.
@@ -98,6 +112,25 @@ mod tests {
                     "the path comes back to a state that it has passed, at load factor 0.250000"
                 ),
             "{told:?}"
+        );
+    }
+
+    /// The first eight one by one, and the others together.
+    #[test]
+    fn many_changes_are_told_together() {
+        let change = |k: usize| StabilityChange {
+            load: 0.125 * (k + 1) as f64,
+            before: Stability::Directions(k),
+            after: Stability::Directions(k + 1),
+        };
+        let told = |count: usize| -> Vec<String> {
+            warnings(&Solution { events: (0..count).map(change).collect(), ..Solution::default() }).collect()
+        };
+        assert_eq!((told(8).len(), told(12).len()), (8, 9));
+        let more = told(12).pop().expect("a warning");
+        assert!(
+            more.starts_with("its stability changes 4 more times, the last time at load factor 1.50000"),
+            "{more}"
         );
     }
 

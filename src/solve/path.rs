@@ -146,6 +146,9 @@ const SHORTEST_AGAIN: f64 = 1e-3;
 /// imperfections below 1e-7 are mistaken for bifurcations.
 const BELIEVED_STEP: f64 = 1e-5;
 
+/// Load factors that are smaller than this are none, for the size of such a step against them.
+const EARLY: f64 = 1e-3;
+
 /// Why a path could not be followed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoStep {
@@ -341,7 +344,7 @@ impl<'e, 'a> Path<'e, 'a> {
                         || self.parameter != Parameter::Load && point.parameter - here > FAR_ACROSS * step
                         || self.passes_more_than_a_limit(&point)
                         || self.crosses_twice(&point);
-                    if doubtful && step > BELIEVED_STEP {
+                    if doubtful && step > self.believed_step(target) {
                         if let Some(record) = self.history.last_mut() {
                             record.accepted = false;
                         }
@@ -437,6 +440,14 @@ impl<'e, 'a> Path<'e, 'a> {
         counts.load_steps -= 1;
         counts.rejected_steps += 1;
         true
+    }
+
+    /// A step to this end in which stability is lost is accepted where it is no longer.
+    fn believed_step(&self, target: f64) -> f64 {
+        match self.parameter {
+            Parameter::Load => BELIEVED_STEP * target.abs().clamp(EARLY, 1.0),
+            _ => BELIEVED_STEP,
+        }
     }
 
     /// Whether a point is less stable than the last one although no limit point of the load lies

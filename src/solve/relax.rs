@@ -52,6 +52,8 @@ const NONE: f64 = 1e-14;
 const SETTLED: f64 = 1e-3;
 /// Gaps of constraints below this part of the stiffness are closed.
 const CLOSED: f64 = 1e-13;
+/// Forces out of balance by more than this part of the loads are no round-off, whatever the stiffness is.
+const BALANCED: f64 = 0.1;
 /// Most iterations.
 const ITERATIONS: usize = 2000;
 
@@ -116,6 +118,7 @@ fn creep(
     }
     equilibrium.system().supports().impose(load, &mut x[..n]);
     let weights = equilibrium.system().weights();
+    let loads = loads(equilibrium.system(), load, &x[..n]);
     let floppy = equilibrium.system().is_floppy();
     let pace = if floppy { FLOPPY } else { STIFF };
     let (mut sigma, mut first, mut on_a_crest, mut closes) = (0.0, 0.0, false, false);
@@ -130,7 +133,7 @@ fn creep(
             let unbalanced = system.norm(forces);
             // Without unbalanced forces `x` is an equilibrium already, and the tangent may be
             // singular.
-            let round_off = system.round_off();
+            let round_off = system.round_off().min(BALANCED * loads);
             let closed = if closes { round_off.max(CLOSED * system.stiffness()) } else { round_off };
             if unbalanced <= closed && gaps.iter().all(|gap| gap.abs() <= closed) {
                 return Ok(());
@@ -193,6 +196,14 @@ fn creep(
         }
     }
     Err(Failure::TooSlow { iterations: ITERATIONS, last: size })
+}
+
+/// The size of the loads \[N\] at a load factor in a state; infinite where there are none, but for moving supports.
+fn loads(system: &System, load: f64, q: &[f64]) -> f64 {
+    let mut forces = vec![0.0; q.len()];
+    system.add_load_rate(1.0, load, q, &mut forces);
+    let size = load * system.norm(&forces);
+    if size > 0.0 { size } else { f64::INFINITY }
 }
 
 /// Whether a direction lacks stiffness. Where follower loads are part of the equations, the sign of the

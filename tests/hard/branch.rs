@@ -221,6 +221,33 @@ fn what_has_no_potential_does_not_hide_that_a_column_buckles() {
     }
 }
 
+/// A pinned column that is made shorter by 40 % in one go, of which the first millionth makes it buckle, while a force of a thousandth of
+/// its critical load pushes it aside: it bends into the elastica with 2E(m)/K(m) − 1 = 0.6 under 4 K(m)² EI/L² (Love, *A Treatise on the
+/// Mathematical Theory of Elasticity*, § 263; by SciPy's `ellipk`, without the force).
+#[test]
+fn a_column_buckles_however_early_on_its_way() {
+    for stiffness in ["1e4", "1e5", "1e6"] {
+        let text = format!(
+            "beam.c = {{ start = [0, 0], end = [1, 0], axial_stiffness = {stiffness}, bending_stiffness = 1, basis.ancf.elements = 24 }}
+            probe = [{{ name = 'middle', beam = 'c', at = 0.5 }}]
+            support = [{{ beam = 'c', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'c', at = 'end', fix = ['x', 'y'], move = {{ x = -0.4 }} }}]
+            effect.force = [{{ beam = 'c', at = 0.4, value = [0, 0.01] }}]
+            output.reactions = true\nanalysis.static = {{}}\n"
+        );
+        let scene = ancf::scene::parse("column", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let Analysis::Static(settings) = scene.analysis() else { panic!("statics") };
+        let found =
+            analysis(scene.model(), settings.clone()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let push = found.reactions[0].samples.last().expect("a reaction").fx;
+        let aside = last(&found)[0].y;
+        assert!(
+            (push - 12.4235).abs() < 0.02 && (aside - 0.348_713).abs() < 1e-3,
+            "{stiffness}: {push} {aside}"
+        );
+        assert_eq!(found.run.warnings, [""; 0], "{stiffness}");
+    }
+}
+
 /// A straight column, of which load factors alone change up to the first critical load and beyond: P (1 − P/EA) = π² EI/4L². The path goes straight
 /// through the bifurcation, wherever the column points, and tells its load to the error of the elements, however far it goes.
 #[test]

@@ -1,13 +1,16 @@
 //! Layers at the ends of tight beams that no cell shows.
 //!
 //! Under a tension N a beam bends otherwise than a string only within a few λ = √(EI/N) of an end, or of what acts in a point. At an end
-//! that turns freely its curvature falls from κ to nothing there, by κ e^(−d/λ) at the distance d, and its direction is off that of the
-//! string by κ λ e^(−d/λ). Where all cells are longer than λ every mesh has the curvature of the string up to the end, so that coarser
-//! meshes tell nothing of that.
+//! that turns freely its curvature falls from κ to nothing there, by κ e^(−d/λ) at the distance d, its direction is off that of the
+//! string by κ λ e^(−d/λ), and its position by κ λ² (1 − e^(−d/λ)). Where all cells are longer than λ every mesh has the curvature of
+//! the string up to the end, so that coarser meshes tell nothing of that.
 
 use super::{Difference, larger};
 use crate::model::{FixedRotation, Joint, Model, Place};
 use crate::results::{AnalysisKind, Trajectory};
+
+/// The part of κ λ² by which positions are off within the cell: on average over it they are right.
+const OF_CELL: f64 = 0.5;
 
 /// A layer at an end of a beam that is shorter than the cell there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +22,9 @@ pub(in crate::accuracy) struct Layer {
     /// λ \[m\].
     pub length: f64,
     /// By how much the curvature is off for it, as a part of the largest.
-    pub error: f64,
+    pub curvature: f64,
+    /// By how much positions in the cell are off for it, in beam lengths.
+    pub position: f64,
 }
 
 /// What results err by for layers that are shorter than the cells at the ends of beams with the `nodes` \[m\] given, in the records of
@@ -52,25 +57,26 @@ pub(in crate::accuracy) fn layers(
             let curvature = curvature.abs();
             let of_largest = |scale: f64| if scale > 0.0 { curvature / scale } else { 0.0 };
             let error = of_largest(difference.scales.curvature);
-            found.push(Layer { beam: index, end, length: layer, error });
             sum.errors.curvature = sum.errors.curvature.map(|most| larger(most, error));
-            let off = curvature * layer * layer;
+            let off = OF_CELL * curvature * layer * layer;
+            found.push(Layer { beam: index, end, length: layer, curvature: error, position: off / last });
             sum.errors.result = larger(sum.errors.result, off / last);
             sum.records.iter_mut().for_each(|record| *record = larger(*record, off / last));
             let left = |s: f64| (-(s - end).abs() / layer).exp();
+            let off = |s: f64| off * (1.0 - left(s)) * (1.0 - (s - end).abs() / cell).max(0.0);
             if let Some(along) = sum.beams.get_mut(index) {
                 for ((s, position), bent) in along.s.iter().zip(&mut along.position).zip(&mut along.curvature)
                 {
-                    *position = larger(*position, off * (1.0 - left(*s)) / last);
+                    *position = larger(*position, off(*s) / last);
                     *bent = larger(*bent, curvature * left(*s));
                 }
             }
             let here = model.probes.iter().zip(&mut sum.probes).filter(|(probe, _)| probe.at.beam == index);
-            for (left, error) in
-                here.flat_map(|(probe, errors)| errors.samples.iter_mut().map(move |e| (left(probe.at.s), e)))
+            for (s, error) in
+                here.flat_map(|(probe, errors)| errors.samples.iter_mut().map(|e| (probe.at.s, e)))
             {
-                error.x = larger(error.x, off * (1.0 - left));
-                error.y = larger(error.y, off * (1.0 - left));
+                let left = left(s);
+                (error.x, error.y) = (larger(error.x, off(s)), larger(error.y, off(s)));
                 error.angle = larger(error.angle, curvature * layer * left);
                 error.curvature = larger(error.curvature, curvature * left);
             }

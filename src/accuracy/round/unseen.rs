@@ -214,11 +214,14 @@ impl Runner<'_, '_> {
         Ok(any)
     }
 
-    /// Cells of half the length of layers at the ends of open beams, where these hide more of the curvature than a part of what is
-    /// `wanted`; whether there are any.
-    pub fn resolve(&mut self, layers: &[Layer], wanted: Option<f64>) -> bool {
-        let wanted = wanted.unwrap_or(f64::INFINITY);
-        let hide = |layer: &&Layer| layer.error > AT_JUMPS * wanted && self.is_open(layer.beam);
+    /// Cells of half the length of layers at the ends of open beams, where these hide more than a part of the error that is `wanted`;
+    /// whether there are any.
+    pub fn resolve(&mut self, layers: &[Layer], wanted: Accuracy) -> bool {
+        let curvature = wanted.curvature.unwrap_or(f64::INFINITY);
+        let hides = |layer: &Layer| {
+            layer.curvature > AT_JUMPS * curvature || layer.position > AT_JUMPS * wanted.result
+        };
+        let hide = |layer: &&Layer| hides(layer) && self.is_open(layer.beam);
         let hidden: Vec<Layer> = layers.iter().filter(hide).copied().collect();
         for Layer { beam, end, length, .. } in &hidden {
             let others = self.short[*beam].iter().copied().filter(|[place, _]| place != end);
