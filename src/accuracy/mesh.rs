@@ -21,6 +21,10 @@ const LEAST: usize = 2;
 /// the logarithm of the change up to which that is sought.
 const CHANGE: f64 = 8.0;
 const MOST_CHANGE: f64 = 40.0;
+/// Cells longer than this part of the longest one are long …
+const LONG: f64 = 0.5;
+/// … and others hardly longer, where they are so by less than this factor.
+const HARDLY_LONGER: f64 = 1.4;
 /// How often cells are halved towards a place where the stiffness jumps.
 const GRADES: usize = 3;
 /// How often an interval is halved in search of a place.
@@ -214,6 +218,17 @@ impl Mesh {
             (cells > 1).then(|| cells as f64 / (cells / 2) as f64)
         };
         self.parts().into_iter().map(of).try_fold(f64::INFINITY, |least, times| Some(times?.min(least)))
+    }
+
+    /// Whether a long cell of a `finer` mesh lies in one that is hardly longer, so that both err by as much there.
+    pub fn hardly_differs_from(&self, finer: &Self) -> bool {
+        let cells = || finer.nodes.windows(2).map(|ends| (0.5 * (ends[0] + ends[1]), ends[1] - ends[0]));
+        let longest = cells().map(|(_, width)| width).fold(0.0, f64::max);
+        let around = |s: f64| {
+            let cell = self.cell_at(s);
+            self.nodes[cell + 1] - self.nodes[cell]
+        };
+        cells().any(|(middle, width)| width >= LONG * longest && around(middle) < HARDLY_LONGER * width)
     }
 
     /// Four cells in every part between nodes that must be that has one.
@@ -433,7 +448,7 @@ fn even(start: f64, end: f64, cells: usize) -> Vec<f64> {
 }
 
 /// By how much a stress-free centreline turns in all \[rad\].
-fn turning(curve: &Curve) -> f64 {
+pub(super) fn turning(curve: &Curve) -> f64 {
     const SAMPLES: usize = 256;
     let tangent = |i: usize| curve.tangent(curve.length() * i as f64 / SAMPLES as f64);
     let turn = |i: usize| {

@@ -84,7 +84,7 @@ pub(super) struct Runner<'a, 'o> {
     named: Vec<Option<Mesh>>,
     /// Those of them whose errors finer meshes do not remove.
     saturated: Vec<bool>,
-    /// Those of them whose shape functions in the coarse runs are too different. Not in motions, for which elements would
+    /// Those of them whose shape functions in the coarse runs are too different, or whose cells are too much alike. Not in motions, for which elements would
     /// take more time than the estimate may.
     dissimilar: Vec<bool>,
     /// Those of them within whose cells something acts in a point.
@@ -190,13 +190,16 @@ impl<'a, 'o> Runner<'a, 'o> {
             _ => (FIRST_CELLS_OF_MODES_DO / result).powf(FIRST_CELLS_OF_MODES),
         };
         let mut meshes = Mesh::first(model, waves, times);
-        // The nodes of the run, some of which move to where one must be.
         let named = |(index, mesh): (usize, &Mesh)| {
             let beam = &model.beams[index];
             let curve =
                 Curve::new(&beam.centreline).ok().filter(|_| beam.discretization != Discretization::Open)?;
+            // Nodes of elements move to where one must be. Meshfree ones do so, too, but coarser meshes of those are less even, and
+            // tell less of their errors, than of even ones with more nodes.
+            let moves = matches!(beam.discretization, Discretization::Ancf { .. });
+            let breaks = if moves { model.breaks(index) } else { Vec::new() };
             let nodes = Discretization::Ancf { nodes: beam.discretization.nodes().clone() };
-            Some(mesh.with(Basis::broken(&nodes, curve.length(), &model.breaks(index)).ok()?.nodes()))
+            Some(mesh.with(Basis::broken(&nodes, curve.length(), &breaks).ok()?.nodes()))
         };
         let named: Vec<Option<Mesh>> = meshes.iter().enumerate().map(named).collect();
         let pointed = |(index, named): (usize, &Option<Mesh>)| {
@@ -221,7 +224,8 @@ impl<'a, 'o> Runner<'a, 'o> {
         let dissimilar = |(index, coarse): (usize, &Mesh)| {
             let discretization = &model.beams[index].discretization;
             let uneven = || has_uneven_cells(discretization, coarse.length(), &model.breaks(index));
-            !moves && (ends_prevail(discretization, coarse.cells()) || uneven())
+            let alike = || named[index].as_ref().is_some_and(|named| coarse.hardly_differs_from(named));
+            !moves && (ends_prevail(discretization, coarse.cells()) || uneven() || alike())
         };
         let dissimilar = meshes.iter().enumerate().map(dissimilar).collect();
         let coarsening = |named: &Option<Mesh>| named.as_ref().map_or(Some(2.0), Mesh::coarsening);

@@ -1,16 +1,27 @@
 //! Layers at the ends of tight beams that no cell shows.
 //!
 //! Under a tension N a beam bends otherwise than a string only within a few λ = √(EI/N) of an end, or of what acts in a point. At an end
-//! that turns freely its curvature falls from κ to nothing there, by κ e^(−d/λ) at the distance d, its direction is off that of the
+//! that turns freely its curvature falls from κ to M/EI there, of which coarse cells miss κ e^(−d/λ) at the distance d, its direction is off that of the
 //! string by κ λ e^(−d/λ), and its position by κ λ² (1 − e^(−d/λ)). Where all cells are longer than λ every mesh has the curvature of
 //! the string up to the end, so that coarser meshes tell nothing of that.
 
 use super::{Difference, larger};
+use crate::accuracy::mesh::turning;
+use crate::assembly::Part;
+use crate::centreline::Curve;
+use crate::effect::Moment;
 use crate::model::{FixedRotation, Joint, Model, Place};
 use crate::results::{AnalysisKind, Trajectory};
+use std::any::Any;
+use std::sync::Arc;
 
 /// The part of κ λ² by which positions are off within the cell: on average over it they are right.
 const OF_CELL: f64 = 0.5;
+
+/// Centrelines that turn by less are straight \[rad\].
+const STRAIGHT: f64 = 1e-9;
+/// Cells that are so many times longer than λ begin to see it.
+const SEEN: f64 = 3.0;
 
 /// A layer at an end of a beam that is shorter than the cell there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,16 +56,28 @@ pub(in crate::accuracy) fn layers(
         else {
             continue;
         };
+        // Of others the moment is not EI κ.
+        let straight = Curve::new(&beam.centreline).is_ok_and(|curve| turning(&curve) < STRAIGHT);
+        let actuated = model.parts.iter().any(|part| part.actuation(index).is_some());
+        if !straight || actuated || !beam.section.is_linear() {
+            continue;
+        }
         for (end, cell, k) in
             [(first, second - first, 0), (last, last - before, shape.s.len().saturating_sub(1))]
         {
-            let values = (shape.axial_force.get(k).filter(|force| **force > 0.0), shape.curvature.get(k));
-            let (Some(tension), Some(curvature)) = values else { continue };
-            let layer = (bending.at(end, 0.5 * last) / tension).sqrt();
-            if layer >= cell || !turns_freely(model, index, end, last) {
+            let of = |along: &[f64]| along.get(k).copied();
+            let values = of(&shape.axial_force).zip(of(&shape.bending_moment)).zip(of(&shape.curvature));
+            let Some(((tension, moment), seen)) = values.filter(|((tension, _), _)| *tension > 0.0) else {
+                continue;
+            };
+            let stiffness = bending.at(end, 0.5 * last);
+            let layer = (stiffness / tension).sqrt();
+            // Cells that are little longer see a part of the layer, and other meshes tell the rest.
+            let hidden = 1.0 - SEEN * layer / cell;
+            if hidden <= 0.0 || !turns_freely(model, index, end, last) {
                 continue;
             }
-            let curvature = curvature.abs();
+            let curvature = hidden * (seen - moment / stiffness).abs();
             let of_largest = |scale: f64| if scale > 0.0 { curvature / scale } else { 0.0 };
             let error = of_largest(difference.scales.curvature);
             sum.errors.curvature = sum.errors.curvature.map(|most| larger(most, error));
@@ -77,7 +100,8 @@ pub(in crate::accuracy) fn layers(
             {
                 let left = left(s);
                 (error.x, error.y) = (larger(error.x, off(s)), larger(error.y, off(s)));
-                error.angle = larger(error.angle, curvature * layer * left);
+                let slope = if (s - end).abs() < cell { OF_CELL * layer / cell } else { 0.0 };
+                error.angle = larger(error.angle, curvature * layer * left.max(slope));
                 error.curvature = larger(error.curvature, curvature * left);
             }
         }
@@ -85,11 +109,18 @@ pub(in crate::accuracy) fn layers(
     (!found.is_empty()).then_some((sum, found))
 }
 
-/// Whether neither a support nor a joint holds the direction of a beam at its end.
+/// Whether neither a support, a joint nor a torsion spring holds the direction of a beam at its end.
 fn turns_freely(model: &Model, beam: usize, end: f64, length: f64) -> bool {
     let here = |at: &Place| at.beam == beam && (at.s - end).abs() <= super::SAME * length;
     let held = model.supports.iter().any(|s| s.fix.rotation != FixedRotation::Free && here(&s.at));
     let weld = |joint: &&Joint| matches!(joint, Joint::Weld { .. });
     let welded = model.joints.iter().filter(weld).flat_map(Joint::places).any(|at| here(&at));
-    !held && !welded
+    let sprung = |part: &Arc<dyn Part>| part.couple().is_some_and(|at| here(&at)) && !is_load(part);
+    !held && !welded && !model.parts.iter().any(sprung)
+}
+
+/// Whether a part is a couple of a given size.
+fn is_load(part: &Arc<dyn Part>) -> bool {
+    let part: &dyn Any = part.as_ref();
+    part.is::<Moment>()
 }

@@ -218,10 +218,10 @@ impl Runner<'_, '_> {
     /// whether there are any.
     pub fn resolve(&mut self, layers: &[Layer], wanted: Accuracy) -> bool {
         let curvature = wanted.curvature.unwrap_or(f64::INFINITY);
-        let hides = |layer: &Layer| {
-            layer.curvature > AT_JUMPS * curvature || layer.position > AT_JUMPS * wanted.result
-        };
-        let hide = |layer: &&Layer| hides(layer) && self.is_open(layer.beam);
+        let hides = |layer: &Layer| layer.curvature > AT_JUMPS * curvature || layer.position > wanted.result;
+        // In cells as short as that beams that keep their length have rows that are nearly the same.
+        let stretches = |beam: usize| self.model.beams[beam].section.axial_stiffness.is_some();
+        let hide = |layer: &&Layer| hides(layer) && self.is_open(layer.beam) && stretches(layer.beam);
         let hidden: Vec<Layer> = layers.iter().filter(hide).copied().collect();
         for Layer { beam, end, length, .. } in &hidden {
             let others = self.short[*beam].iter().copied().filter(|[place, _]| place != end);
@@ -243,6 +243,14 @@ impl Runner<'_, '_> {
                 "the support at s = {} m of beam `{}` fixes the gradient, and leaves no strain in that one point: fix the `angle` instead",
                 plain(s, 6),
                 self.model.beams[beam].name
+            );
+        }
+        let length = self.meshes[beam].length();
+        if s <= 0.0 || s >= length {
+            return format!(
+                "beam `{}` bends within a short part of its end at s = {} m, which takes cells that are as short there",
+                self.model.beams[beam].name,
+                plain(s, 6)
             );
         }
         format!(
@@ -307,8 +315,19 @@ pub(super) fn has_points(model: &Model, beam: usize, named: &Mesh) -> bool {
     let Ok(length) = Curve::new(&model.beams[beam].centreline).map(|curve| curve.length()) else {
         return false;
     };
-    let Ok(basis) = Basis::new(&model.beams[beam].discretization, length) else { return false };
-    let own: Vec<f64> = basis.nodes().iter().copied().chain(model.breaks(beam)).collect();
+    let discretization = &model.beams[beam].discretization;
+    let breaks = model.breaks(beam);
+    let own: Vec<f64> = match discretization {
+        Discretization::Ancf { .. } => {
+            Basis::broken(discretization, length, &breaks).map(|basis| basis.nodes().to_vec())
+        }
+        _ => Basis::new(discretization, length)
+            .map(|basis| basis.nodes().iter().copied().chain(breaks).collect()),
+    }
+    .unwrap_or_default();
+    if own.is_empty() {
+        return false;
+    }
     let near = AT_NODE * length / own.len() as f64;
     let within = |s: &f64| own.iter().all(|node| (node - s).abs() > near);
     named.nodes.iter().any(within)
