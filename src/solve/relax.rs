@@ -133,7 +133,10 @@ fn creep(
             let unbalanced = system.norm(forces);
             // Without unbalanced forces `x` is an equilibrium already, and the tangent may be
             // singular.
-            let round_off = system.round_off().min(BALANCED * loads);
+            // Of what is stiff against bending alone, axial forces are known better than that.
+            let hidden = loads <= system.stress_round_off();
+            let balanced = if hidden { f64::INFINITY } else { BALANCED * loads };
+            let round_off = system.round_off().min(balanced);
             let closed = if closes { round_off.max(CLOSED * system.stiffness()) } else { round_off };
             if unbalanced <= closed && gaps.iter().all(|gap| gap.abs() <= closed) {
                 return Ok(());
