@@ -744,7 +744,7 @@ pub(super) mod tests {
         // A node that must be at 1.5 m leaves one cell before it.
         let couple = "effect.moment = [{ beam = 'arm', at = 1.5, value = 1 }]\n";
         assert!(of("{ ancf.nodes = [0, 2, 3, 4] }", couple).0);
-        assert!(!of("{ ancf.nodes = [0, 1, 1.5, 2, 4] }", couple).0);
+        assert!(!of("{ ancf.nodes = [0, 0.75, 1.5, 2.75, 4] }", couple).0);
         let moving = scene(&format!("beam.arm.basis.ancf.elements = 7\n{MOTION}"));
         assert_eq!(runner(&moving, 1e-3).contractions(f64::INFINITY)[0], 10.0, "steps are halved");
     }

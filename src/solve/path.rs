@@ -145,7 +145,7 @@ const SHORTEST_AGAIN: f64 = 1e-3;
 /// about as wide as the imperfection to the power of 2/3 (Koiter), so that only knees of
 /// imperfections below 1e-7 are mistaken for bifurcations.
 const BELIEVED_STEP: f64 = 1e-5;
-/// Before this load factor it is smaller, by its power 3/2 down to the same part of it: so early a critical load is as near, and so is
+/// Before this load factor it is smaller, by its third power down to the same part of it: so early a critical load is as near, and so is
 /// the knee beside it.
 const EARLY: f64 = 1e-3;
 
@@ -445,7 +445,7 @@ impl<'e, 'a> Path<'e, 'a> {
     /// A step to this end in which stability is lost is accepted where it is no longer.
     fn believed_step(&self, target: f64) -> f64 {
         match self.parameter {
-            Parameter::Load => BELIEVED_STEP * (target.abs() / EARLY).powf(1.5).clamp(EARLY, 1.0),
+            Parameter::Load => BELIEVED_STEP * (target.abs() / EARLY).powi(3).clamp(EARLY, 1.0),
             _ => BELIEVED_STEP,
         }
     }

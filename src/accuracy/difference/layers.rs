@@ -7,13 +7,11 @@
 
 use super::{Difference, larger};
 use crate::accuracy::mesh::turning;
-use crate::assembly::Part;
 use crate::centreline::Curve;
 use crate::effect::Moment;
 use crate::model::{FixedRotation, Joint, Model, Place};
 use crate::results::{AnalysisKind, Trajectory};
 use std::any::Any;
-use std::sync::Arc;
 
 /// The part of κ λ² by which positions are off within the cell: on average over it they are right.
 const OF_CELL: f64 = 0.5;
@@ -115,12 +113,9 @@ fn turns_freely(model: &Model, beam: usize, end: f64, length: f64) -> bool {
     let held = model.supports.iter().any(|s| s.fix.rotation != FixedRotation::Free && here(&s.at));
     let weld = |joint: &&Joint| matches!(joint, Joint::Weld { .. });
     let welded = model.joints.iter().filter(weld).flat_map(Joint::places).any(|at| here(&at));
-    let sprung = |part: &Arc<dyn Part>| part.couple().is_some_and(|at| here(&at)) && !is_load(part);
-    !held && !welded && !model.parts.iter().any(sprung)
-}
-
-/// Whether a part is a couple of a given size.
-fn is_load(part: &Arc<dyn Part>) -> bool {
-    let part: &dyn Any = part.as_ref();
-    part.is::<Moment>()
+    let sprung = model.parts.iter().any(|part| {
+        let load: &dyn Any = part.as_ref();
+        part.couple().is_some_and(|at| here(&at)) && !load.is::<Moment>()
+    });
+    !held && !welded && !sprung
 }
