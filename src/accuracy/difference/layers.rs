@@ -1,9 +1,9 @@
 //! Layers at the ends of tight beams that no cell shows.
 //!
 //! Under a tension N a beam bends otherwise than a string only within a few λ = √(EI/N) of an end, or of what acts in a point. At an end
-//! that turns freely its curvature falls from κ to M/EI there, of which coarse cells miss κ e^(−d/λ) at the distance d, its direction is off that of the
-//! string by κ λ e^(−d/λ), and its position by κ λ² (1 − e^(−d/λ)). Where all cells are longer than λ every mesh has the curvature of
-//! the string up to the end, so that coarser meshes tell nothing of that.
+//! that turns freely its curvature goes over from that of the string to M/EI. With κ the difference of both, at the distance d, this
+//! changes its curvature by κ e^(−d/λ), its direction by κ λ e^(−d/λ) and its position by κ λ² (1 − e^(−d/λ)). Where all cells are longer
+//! than λ every mesh has the curvature of the string up to the end, so that coarser meshes tell nothing of that.
 
 use super::{Difference, larger};
 use crate::accuracy::mesh::turning;
