@@ -84,8 +84,8 @@ pub(super) struct Runner<'a, 'o> {
     named: Vec<Option<Mesh>>,
     /// Those of them whose errors finer meshes do not remove.
     saturated: Vec<bool>,
-    /// Those of them whose shape functions in the coarse runs are too different, or whose cells are too much alike. Not in motions, for which elements would
-    /// take more time than the estimate may.
+    /// Those of them whose shape functions in the coarse runs are too different, or whose cells are too much alike. Not in motions, for
+    /// which elements would take more time than the estimate may.
     dissimilar: Vec<bool>,
     /// Those of them within whose cells something acts in a point.
     pointed: Vec<bool>,
@@ -196,8 +196,8 @@ impl<'a, 'o> Runner<'a, 'o> {
                 Curve::new(&beam.centreline).ok().filter(|_| beam.discretization != Discretization::Open)?;
             // Nodes of elements move to where one must be. Meshfree ones do so, too, but coarser meshes of those are less even, and
             // tell less of their errors, than of even ones with more nodes.
-            let moves = matches!(beam.discretization, Discretization::Ancf { .. });
-            let breaks = if moves { model.breaks(index) } else { Vec::new() };
+            let elements = matches!(beam.discretization, Discretization::Ancf { .. });
+            let breaks = if elements { model.breaks(index) } else { Vec::new() };
             let nodes = Discretization::Ancf { nodes: beam.discretization.nodes().clone() };
             Some(mesh.with(Basis::broken(&nodes, curve.length(), &breaks).ok()?.nodes()))
         };

@@ -15,7 +15,6 @@ use std::any::Any;
 
 /// The part of κ λ² by which positions are off within the cell: on average over it they are right.
 const OF_CELL: f64 = 0.5;
-
 /// Centrelines that turn by less are straight \[rad\].
 const STRAIGHT: f64 = 1e-9;
 /// Cells that are so many times longer than λ begin to see it.

@@ -56,7 +56,7 @@ impl<T: Real> Turn<T> {
     #[inline(always)]
     pub fn forth(&self, v: &mut [T; 4]) {
         let [a, b, c, d] = *v;
-        let [[a, b], [c, d]] = [[a, b], [c, d]].map(|pair| self.of_pair(pair));
+        let ([a, b], [c, d]) = (self.of_pair([a, b]), self.of_pair([c, d]));
         *v = [a, b, c, d];
     }
 
