@@ -116,14 +116,16 @@ impl Sampler<'_> {
             &mut |load: f64, step: f64, statistics: &Statistics| watch.goes_on(load, 1.0, step, statistics);
         let (mut parts, mut finer) = (1, FINER.into_iter());
         loop {
-            let settings = Static { tolerance: Some(TO_THE_END), steps: Some(parts), ..Static::default() };
+            let steps = (parts > 1).then_some(parts);
+            let settings = Static { tolerance: Some(TO_THE_END), steps, ..Static::default() };
             let mut solution = statics::solve(self.system, &settings, None, &mut *report);
             if let Some(stuck) = &solution.stuck {
                 return Err(self.stuck(stuck, &solution, false));
             }
-            // Only the last equilibrium matters, not the path to it.
+            // Of the path to the last equilibrium only the turns matter that the probes have made on it.
+            let angles = self.last_angles(&solution);
             solution.keep_last();
-            let mut trajectory = self.equilibria(AnalysisKind::Modal, &solution);
+            let mut trajectory = self.equilibria(AnalysisKind::Modal, &solution, &angles);
             let variables = solution.variables.last().cloned().unwrap_or_default();
             let vibrations = match solution.states.last() {
                 Some((load, x)) if *load == 1.0 => {

@@ -145,8 +145,8 @@ fn stations(even: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<Side>) {
 /// From where the turns of directions are counted.
 #[derive(Clone, Copy)]
 pub(super) enum History<'h> {
-    /// Since this state, that of the record before.
-    Before(Option<&'h [f64]>),
+    /// Since this state, that of the record before, with the turns of all nodes since then where they are known.
+    Before(&'h [f64], &'h [f64]),
     /// Directions at all probes, with full turns included already.
     Angles(&'h [f64]),
 }
@@ -598,32 +598,51 @@ impl<'a> Sampler<'a> {
         if self.model.outputs.effects {
             self.record_effects(trajectory, parameter, q, (velocity, variables));
         }
+        let records = trajectory.parameter.len();
+        self.see_probes(&mut trajectory.probes, records, (history, q), velocity);
+    }
+
+    /// Adds what the probes see to their `series`, of which this is one of so many `records`.
+    fn see_probes(
+        &self,
+        series: &mut [ProbeSeries],
+        records: usize,
+        (history, q): (History<'_>, &[f64]),
+        velocity: Option<&[f64]>,
+    ) {
         let mut turns = vec![None; self.system.beams().len()];
         for (probe, (ProbePoint { beam, view, measure, reference_strain, .. }, series)) in
-            self.probes.iter().zip(&mut trajectory.probes).enumerate()
+            self.probes.iter().zip(series).enumerate()
         {
             let fields = view.fields(q);
             // A string that nothing loads yet has no shape of its own: the turns of the first two records count from where it was laid out.
-            let is_first = trajectory.parameter.len() <= 2 && self.system.starts_bent();
+            let is_first = records <= 2 && self.system.starts_bent();
             let is_slack = is_first && self.model.beams[*beam].section.bending_stiffness.is_none();
             let start = is_slack.then(|| self.system.start());
             let known = match history {
                 History::Angles(angles) => angles.get(probe).copied().filter(|angle| angle.is_finite()),
-                History::Before(_) => None,
+                History::Before(..) => None,
             };
             let angle = known.unwrap_or_else(|| {
                 let (before, from) = match (start, history) {
                     (Some(start), _) => (Some(start), Some(view.fields(start).angle())),
-                    (None, History::Before(before)) => {
-                        (before, series.samples.last().map(|sample| sample.angle))
+                    (None, History::Before(before, _)) => {
+                        (Some(before), series.samples.last().map(|sample| sample.angle))
                     }
                     (None, History::Angles(_)) => (None, None),
                 };
-                let turned = before.map_or(0.0, |before| {
-                    let part = &self.system.beams()[*beam];
+                let part = &self.system.beams()[*beam];
+                let node = turning::nearest(part, view.s()[0]);
+                let known = match history {
+                    History::Before(_, turned) if start.is_none() => turned.get(part.first_node + node),
+                    _ => None,
+                };
+                let turned = known.copied().or_else(|| {
+                    let before = before?;
                     let turns = turns[*beam].get_or_insert_with(|| turning::turns(part, before, q));
-                    turns[turning::nearest(part, view.s()[0])]
+                    Some(turns[node])
                 });
+                let turned = turned.unwrap_or(0.0);
                 unfold(fields.angle(), from.map(|angle| angle + turned))
             });
             series.samples.push(ProbeSample {
@@ -639,11 +658,41 @@ impl<'a> Sampler<'a> {
     }
 
     pub(super) fn statics(&self, solution: &Solution) -> Trajectory {
-        self.equilibria(AnalysisKind::Static, solution)
+        self.equilibria(AnalysisKind::Static, solution, &self.angles)
     }
 
-    /// The trajectory of equilibria that an analysis needs.
-    pub(super) fn equilibria(&self, analysis: AnalysisKind, solution: &Solution) -> Trajectory {
+    /// The directions at all probes in the last of some equilibria \[rad\], with the full turns since the start.
+    pub(super) fn last_angles(&self, solution: &Solution) -> Vec<f64> {
+        let mut series = vec![ProbeSeries::default(); self.probes.len()];
+        for (i, (_, x)) in solution.states.iter().enumerate() {
+            self.see_probes(
+                &mut series,
+                i + 1,
+                (self.history(solution, i, &self.angles), self.coordinates_of(x)),
+                None,
+            );
+        }
+        series.iter().filter_map(|series| series.samples.last()).map(|sample| sample.angle).collect()
+    }
+
+    /// From where turns are counted in a state of this number, if these are the angles of the first.
+    fn history<'h>(&self, solution: &'h Solution, number: usize, angles: &'h [f64]) -> History<'h> {
+        match number.checked_sub(1) {
+            None => History::Angles(angles),
+            Some(before) => {
+                let turned = solution.turned.get(number).map_or(&[][..], |turned| turned);
+                History::Before(self.coordinates_of(&solution.states[before].1), turned)
+            }
+        }
+    }
+
+    /// The trajectory of equilibria that an analysis needs; `angles` are those of the probes in the first of them, where they are known.
+    pub(super) fn equilibria(
+        &self,
+        analysis: AnalysisKind,
+        solution: &Solution,
+        angles: &[f64],
+    ) -> Trajectory {
         let mut trajectory = self.empty(analysis);
         let count = solution.states.len();
         let (mut locking, mut loose) = (self.locking.clone(), self.loose.clone());
@@ -655,9 +704,8 @@ impl<'a> Sampler<'a> {
             if self.model.outputs.reactions {
                 self.record_reactions(&mut trajectory, &self.system.static_reactions(*load, x, variables));
             }
-            let before = i.checked_sub(1).map(|i| self.coordinates_of(&solution.states[i].1));
             let energy = Energy { work: work.value, ..self.system.energy(*load, q, None).with(variables) };
-            let history = if i == 0 { History::Angles(&self.angles) } else { History::Before(before) };
+            let history = self.history(solution, i, angles);
             self.record(&mut trajectory, *load, (history, q), (None, variables), energy);
             if is_among(i, count, self.frames) {
                 trajectory.frames.push(self.frame(*load, q));

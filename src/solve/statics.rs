@@ -10,6 +10,7 @@ use crate::assembly::{InternalVariables, Kind};
 use crate::model::{ArcLength, Static};
 use crate::numeric::GOLDEN;
 use crate::solve::{Statistics, StepRecord, Work};
+use crate::system::turning::Turned;
 use crate::system::{System, View};
 
 /// Largest last increment, in beam lengths, with which stability and the path's tangent are judged.
@@ -54,6 +55,8 @@ pub struct Solution {
     pub variables: Vec<InternalVariables>,
     /// Work of the actuators up to each of them.
     pub work: Vec<Work>,
+    /// Where supports turn far, by how much the nodes of all beams have turned to each of them from the one before \[rad\].
+    pub turned: Vec<Vec<f64>>,
     /// Attempted steps.
     pub history: Vec<StepRecord>,
     /// Stability of the state in which the path begins, if it is unstable.
@@ -97,11 +100,20 @@ impl Solution {
         self.states.drain(..before);
         self.variables.drain(..before);
         self.work.drain(..before);
+        self.turned.drain(..before);
     }
 
-    fn record(&mut self, equilibrium: &Equilibrium<'_>, load: f64, x: &[f64], work: Work) {
+    fn record(
+        &mut self,
+        equilibrium: &Equilibrium<'_>,
+        load: f64,
+        x: &[f64],
+        work: Work,
+        turned: &mut Turned,
+    ) {
         self.states.push((load, x.to_vec()));
         self.work.push(work);
+        self.turned.push(turned.take());
         self.variables.push(equilibrium.internal_variables(x));
     }
 }
@@ -308,9 +320,11 @@ fn along_load(
     let mut known = path.last().stability;
     solution.unstable_start = known.filter(|stability| stability.is_unstable());
     let mut work = Work::default();
-    solution.record(path.equilibrium, 0.0, &path.last().x, work);
+    let mut turned = Turned::new(path.equilibrium.system());
+    solution.record(path.equilibrium, 0.0, &path.last().x, work, &mut turned);
     let recorded = settings.steps.unwrap_or(1).max(1);
-    let between = steps_between(path.equilibrium.system(), settings, recorded);
+    let of_turns = turned.parts().div_ceil(recorded);
+    let between = of_turns.max(steps_between(path.equilibrium.system(), settings, recorded));
     let parts = recorded.saturating_mul(between);
     let mut part = 1;
     let outcome = loop {
@@ -326,10 +340,13 @@ fn along_load(
             }
             break Ok(());
         }
+        if let Some([before, after]) = path.last_two() {
+            turned.add_step(path.equilibrium.system(), &before.x, &after.x);
+        }
         notice(&mut path, &mut known, &mut solution.events);
         let at_end = point.load >= end;
         if settings.steps.is_none() || at_end && part.is_multiple_of(between) {
-            solution.record(path.equilibrium, point.load, &point.x, work);
+            solution.record(path.equilibrium, point.load, &point.x, work, &mut turned);
         }
         part += usize::from(at_end);
         let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
@@ -340,7 +357,7 @@ fn along_load(
     // Where the path ends early, its end is recorded too.
     let last = path.last();
     if solution.states.last().is_none_or(|(load, _)| *load != last.load) {
-        solution.record(path.equilibrium, last.load, &last.x, work);
+        solution.record(path.equilibrium, last.load, &last.x, work, &mut turned);
     }
     solution.history = std::mem::take(&mut path.history);
     solution.unwatched = path.last().stability.is_none() && !path.equilibrium.is_symmetric();
@@ -365,7 +382,8 @@ fn relaxed(
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let mut work = Work::default();
-    solution.record(equilibrium, 0.0, &x, work);
+    let mut turned = Turned::new(equilibrium.system());
+    solution.record(equilibrium, 0.0, &x, work, &mut turned);
     // A support that turns far at once may as well turn the other way: steps that are not recorded lie between.
     let of_turns = (equilibrium.system().largest_turn() / LARGEST_TURN).ceil() as usize;
     let recorded = settings.steps.unwrap_or(1).max(1);
@@ -434,8 +452,9 @@ fn relaxed(
         }
         equilibrium.statistics.load_steps += 1;
         work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
+        turned.add_step(equilibrium.system(), &start, &x);
         if part.is_multiple_of(between) {
-            solution.record(equilibrium, load, &x, work);
+            solution.record(equilibrium, load, &x, work, &mut turned);
         }
         equilibrium.set_accepted(&x);
         if stopped || !observe(load, step, &equilibrium.statistics) {
@@ -627,7 +646,8 @@ fn along_arc(
     let mut known = path.last().stability;
     solution.unstable_start = known.filter(|stability| stability.is_unstable());
     let mut work = Work::default();
-    solution.record(path.equilibrium, 0.0, &path.last().x, work);
+    let mut turned = Turned::default();
+    solution.record(path.equilibrium, 0.0, &path.last().x, work, &mut turned);
     let mut outcome = Ok(());
     if target.arc.until_load.is_some_and(|load| load < 0.0) {
         path.turn_round();
@@ -652,7 +672,7 @@ fn along_arc(
             solution.events.push(StabilityChange { load, before, after });
         }
         work.add_states(system, (from.load, &from.x), (point.load, &point.x));
-        solution.record(path.equilibrium, point.load, &point.x, work);
+        solution.record(path.equilibrium, point.load, &point.x, work, &mut turned);
         let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
         if reached || !go_on {
             unreached = None;

@@ -1,7 +1,48 @@
 //! Angles that count turns: a tip that has gone round once stands at 2π, not at 0.
 
-use super::unfold;
+use super::{System, View, unfold};
 use crate::assembly::{DiscretizedBeam, Node, nodes};
+use std::f64::consts::FRAC_PI_2;
+
+/// Turn of a support up to which one load step is believed to have turned some node of every beam by less than half a turn \[rad\].
+const FAR: f64 = FRAC_PI_2;
+
+/// How far the nodes of all beams have turned since it was last asked, where supports turn by more than [`FAR`] until load factor 1.
+#[derive(Debug, Default)]
+pub struct Turned {
+    parts: usize,
+    nodes: Vec<f64>,
+}
+
+impl Turned {
+    /// At the start of a path.
+    pub fn new(system: &System) -> Self {
+        let parts = (system.largest_turn() / FAR).ceil() as usize;
+        Self { parts: if parts > 1 { parts } else { 0 }, nodes: Vec::new() }
+    }
+
+    /// The parts of the load in each of which no support turns far; none where a single one does.
+    pub fn parts(&self) -> usize {
+        self.parts
+    }
+
+    /// Adds a load step, in which no support turns far, from one state to another.
+    pub fn add_step(&mut self, system: &System, before: &[f64], now: &[f64]) {
+        if self.parts > 0 {
+            let of_step = system.beams().iter().flat_map(|part| turns(part, before, now));
+            if self.nodes.is_empty() {
+                self.nodes.extend(of_step);
+            } else {
+                self.nodes.iter_mut().zip(of_step).for_each(|(sum, turn)| *sum += turn);
+            }
+        }
+    }
+
+    /// The turns of the nodes, beam by beam \[rad\], counted from zero from now on; nothing where no support turns far.
+    pub fn take(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.nodes)
+    }
+}
 
 /// By how much the nodes of a beam have turned between two states. One load step may wind a beam up
 /// by whole turns. But some node, such as a clamped one, has turned by less than half a turn, and
@@ -22,6 +63,23 @@ pub fn turns(part: &DiscretizedBeam, before: &[f64], now: &[f64]) -> Vec<f64> {
         turns[node] = unfold(turns[node], Some(turns[node + 1]));
     }
     turns
+}
+
+/// By how much the direction of a beam turns from one place to another in a state, from node to node by less than half a turn; `None`
+/// where a place is not on the beam, or there is no such state.
+pub fn between(part: &DiscretizedBeam, q: &[f64], [from, to]: [f64; 2]) -> Option<f64> {
+    let nodes = part.basis.nodes().iter().copied();
+    let (low, high) = (from.min(to), from.max(to));
+    let mut places: Vec<f64> =
+        [low].into_iter().chain(nodes.filter(|s| *s > low && *s < high)).chain([high]).collect();
+    if from > to {
+        places.reverse();
+    }
+    let first = part.offset();
+    (q.len() >= first + 4 * part.basis.nodes().len()).then_some(())?;
+    let views = places.iter().map(|s| View::point(&part.basis, first, *s).ok());
+    let angles: Vec<f64> = views.map(|view| Some(view?.fields(q).angle())).collect::<Option<_>>()?;
+    Some(angles.windows(2).map(|pair| unfold(pair[1] - pair[0], Some(0.0))).sum())
 }
 
 /// The node of a beam that is nearest to `s` \[m\].

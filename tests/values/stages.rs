@@ -1130,3 +1130,55 @@ fn impulses_count_from_where_a_stage_begins() {
         near(impulse, expected, 5e-4, method);
     }
 }
+
+/// Angles at the ends of a beam that is clamped at a support which turns by `turn`, at the end of the last stage.
+fn turned(turn: &str, more: &str, analysis: &str) -> Vec<f64> {
+    let text = format!(
+        "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 20, mass_per_length = 0.5, \
+         basis.ancf.elements = 6 }}
+        support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'], move.angle = '{turn}' }}]
+        probe = [{{ name = 'start', beam = 'arm', at = 'start' }}, {{ name = 'tip', beam = 'arm', at = 'end' }}]
+        {analysis}\n[effect]\n{more}"
+    );
+    let last = solved(&text).pop().expect("a stage");
+    last.states().probes.iter().map(|probe| probe.samples.last().expect("a sample").angle).collect()
+}
+
+/// A support that turns by 800° takes its beam along, however few states are recorded: the tip of a stiff one, which its weight
+/// of 3 N bends by PL²/(6 EI) = 1/40 at most, stands at 800° within 2°.
+#[test]
+fn full_turns_of_a_support_are_counted_however_few_states_are_kept() {
+    let gravity = "gravity.acceleration = [0, -6]\n";
+    let full = 800.0_f64.to_radians();
+    for (turn, sign) in [("800 deg", 1.0), ("-800 deg", -1.0)] {
+        for analysis in [
+            "analysis.static = {}",
+            "analysis.static.steps = 1",
+            "analysis.static.steps = 2",
+            "analysis.modal = { count = 1, about = 'equilibrium' }",
+        ] {
+            let [start, tip] = turned(turn, gravity, analysis)[..] else { panic!("two probes") };
+            assert!((start - sign * full).abs() < 1e-9, "{turn}, {analysis}: {start}");
+            assert!((tip - sign * full).abs() < 2.0_f64.to_radians(), "{turn}, {analysis}: {tip}");
+        }
+    }
+}
+
+/// Vibrations about an equilibrium that is another one than that of the stage before: the probe has the angle of this one, which
+/// a static stage finds, too.
+#[test]
+fn probes_of_a_modal_stage_see_its_own_equilibrium() {
+    let force = "force = [{ beam = 'arm', at = 'end', value = [0, -4], stage = 'two' }]\n";
+    let angles = |analysis: &str| {
+        turned(
+            "30 deg",
+            force,
+            &format!("stage = [{{ name = 'one', analysis.static = {{}} }}, {{ name = 'two', {analysis} }}]"),
+        )
+    };
+    let [still, vibrating] = [angles("analysis.static = {}"), angles("analysis.modal.count = 1")];
+    assert!((still[1] - still[0]).abs() > 0.05, "the force bends the beam: {still:?}");
+    for (still, vibrating) in still.iter().zip(&vibrating) {
+        assert!((still - vibrating).abs() < 1e-9, "{still} {vibrating}");
+    }
+}
