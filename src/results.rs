@@ -6,7 +6,7 @@ mod modes;
 mod shape;
 mod trajectory;
 
-pub use estimate::{BeamErrors, ErrorEstimate, Errors, LazyText, ProbeErrors, RunForError};
+pub use estimate::{BeamErrors, ErrorEstimate, Errors, EventErrors, LazyText, ProbeErrors, RunForError};
 pub use modes::{BucklingMode, CriticalLoads, ModeShape, Vibration, Vibrations};
 pub use shape::{Frame, LargestStress, LayerStress, Shape};
 pub use trajectory::{
@@ -218,7 +218,14 @@ mod tests {
 
     #[test]
     fn events_of_every_kind_have_a_time() {
-        let probe = Event::Probe { time: 0.5, probe: "tip".into(), quantity: "x", value: 3.0, turns: None };
+        let probe = Event::Probe {
+            time: 0.5,
+            probe: "tip".into(),
+            quantity: "x",
+            value: 3.0,
+            turns: None,
+            rates: [0.0; 2],
+        };
         let contact = Event::Contact { time: 0.75, contact: "arm.1".into(), touches: true, impulse: None };
         assert_eq!((probe.time(), contact.time()), (0.5, 0.75));
     }

@@ -1,6 +1,7 @@
 //! By how much two runs of a model differ: where along the beams, when, and in which cells.
 
 mod bent;
+mod events;
 mod kinks;
 mod laid_out;
 mod layers;
@@ -14,9 +15,10 @@ mod strain_jumps;
 use super::judgement::scaled;
 use super::mesh::{CellErrors, Mesh};
 use crate::model::{Analysis, Model};
-use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Results};
+use crate::results::{BeamErrors, Errors, EventErrors, ProbeErrors, ProbeSample, Results};
 
 pub(super) use bent::{bent, defects};
+pub(super) use events::events;
 pub(super) use kinks::kink;
 pub(super) use laid_out::laid_out;
 pub(super) use layers::{Layer, layers};
@@ -39,6 +41,8 @@ pub(super) struct Difference {
     pub eigenvalues: Vec<f64>,
     /// Per own probe and record of the finer run.
     pub probes: Vec<ProbeErrors>,
+    /// Per event of the finer run.
+    pub events: Vec<EventErrors>,
     /// Per record of the finer run.
     pub records: Vec<f64>,
     /// Along each beam.
@@ -61,7 +65,7 @@ pub(super) struct Scales {
 }
 
 impl Difference {
-    /// Divided by these: positions, angles, velocities and values by the first, curvatures, strains and forces by
+    /// Divided by these: positions, angles, velocities, values and events by the first, curvatures, strains and forces by
     /// the second.
     #[must_use]
     pub fn divided(mut self, by: [f64; 2]) -> Self {
@@ -78,6 +82,12 @@ impl Difference {
             sample.vx = sample.vx.map(|v| v / result);
             sample.vy = sample.vy.map(|v| v / result);
         }
+        for event in &mut self.events {
+            event.time /= result;
+            event.value = event.value.map(|value| value / result);
+            event.impulse = event.impulse.map(|impulse| impulse / result);
+            event.largest_force = event.largest_force.map(|force| force / curvature);
+        }
         for beam in &mut self.beams {
             beam.position.iter_mut().for_each(|error| *error /= result);
             beam.curvature.iter_mut().for_each(|error| *error /= curvature);
@@ -92,6 +102,14 @@ impl Difference {
         let Errors { curvature, section_force, .. } = self.errors;
         none.errors = Errors { result: 0.0, curvature: zero(curvature), section_force: zero(section_force) };
         none.records.fill(0.0);
+        for event in &mut none.events {
+            *event = EventErrors {
+                time: 0.0,
+                value: zero(event.value),
+                impulse: zero(event.impulse),
+                largest_force: zero(event.largest_force),
+            };
+        }
         for beam in &mut none.beams {
             beam.position.fill(0.0);
             beam.curvature.fill(0.0);
@@ -130,6 +148,14 @@ impl Difference {
                     vy: of(a.vy, b.vy),
                 };
             }
+        }
+        for (a, b) in sum.events.iter_mut().zip(&other.events) {
+            *a = EventErrors {
+                time: a.time + b.time,
+                value: of(a.value, b.value),
+                impulse: of(a.impulse, b.impulse),
+                largest_force: of(a.largest_force, b.largest_force),
+            };
         }
         for (a, b) in sum.beams.iter_mut().zip(&other.beams) {
             add(&mut a.position, &b.position);
@@ -205,7 +231,7 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::scene::{Scene, parse};
 
@@ -241,6 +267,12 @@ mod tests {
                     vy: None,
                 }],
             }],
+            events: vec![EventErrors {
+                time: 13.0 * k,
+                value: Some(14.0 * k),
+                impulse: None,
+                largest_force: Some(15.0 * k),
+            }],
             records: vec![5.0 * k],
             beams: vec![BeamErrors {
                 beam: "arm".into(),
@@ -266,6 +298,13 @@ mod tests {
                 vy: None,
             };
             assert_eq!(found.probes[0].samples, [sample]);
+            let event = EventErrors {
+                time: 13.0 * first,
+                value: Some(14.0 * first),
+                impulse: None,
+                largest_force: Some(15.0 * second),
+            };
+            assert_eq!(found.events, [event]);
             assert_eq!(found.beams[0].s, [0.5]);
             assert_eq!(
                 (found.beams[0].position[0], found.beams[0].curvature[0]),

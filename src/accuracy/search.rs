@@ -1,6 +1,6 @@
 //! The search for a mesh and steps that are good enough.
 
-use super::difference::{Difference, is_path, jumps};
+use super::difference::{Difference, events, is_path, jumps};
 use super::judgement::{CAUTION, Estimate, Fall, Judged, LEAST_CONTRACTION, Seen, excess};
 use super::mesh::{self, CellErrors, Mesh};
 use super::missing::Missing;
@@ -308,8 +308,10 @@ impl<'a, 'o> Search<'a, 'o> {
         let coarse = round.coarse.as_ref()?;
         let setting = self.runner.setting(Fineness::Coarse, Fineness::Fine);
         let between = self.runner.solve(&round.stations, &setting, Purpose::Shapes).ok()?;
-        let of_steps = self.runner.difference(coarse, &between).ok()?;
+        let mut of_steps = self.runner.difference(coarse, &between).ok()?;
         let of_mesh = self.runner.difference(&between, &round.results).ok()?;
+        let [told, finer, coarse] = [&round.results, &between, coarse].map(|run| &run.states().events[..]);
+        of_steps.events = events(told, [coarse, finer]);
         between.run().complete.then_some([of_mesh, of_steps])
     }
 
@@ -484,9 +486,10 @@ impl<'a, 'o> Search<'a, 'o> {
             ..ErrorEstimate::default()
         };
         estimate.notes.extend(errors.and_then(|estimate| estimate.missing?.note()));
-        if let Some(Difference { errors, eigenvalues, probes, records, beams, .. }) = stated {
+        if let Some(Difference { errors, eigenvalues, probes, events, records, beams, .. }) = stated {
             estimate.probes = probes.into_iter().map(statement::of_probe).collect();
-            estimate = ErrorEstimate { estimated: errors, eigenvalues, records, beams, ..estimate };
+            let events = statement::of_events(events, self.runner.model, results.states(), &estimate.probes);
+            estimate = ErrorEstimate { estimated: errors, eigenvalues, events, records, beams, ..estimate };
             estimate.met = self.runner.wanted.is_none_or(|wanted| excess(estimate.estimated, wanted) <= 1.0);
         }
         if let Some(wanted) = self.runner.wanted

@@ -282,20 +282,25 @@ fn table(results: &Results, directory: &Path) -> String {
         words.push(format!("total {} J", number(energy.total())));
         row("energy", words.join(", "));
     }
-    for event in &trajectory.events {
+    for (i, event) in trajectory.events.iter().enumerate() {
+        let error = run.error.as_ref().and_then(|error| error.events.get(i)).copied().unwrap_or_default();
+        let unknown = if error.time.is_finite() { "" } else { " (error unknown)" };
         match event {
-            Event::Probe { time, probe, quantity, value, turns } => {
+            Event::Probe { time, probe, quantity, value, turns, .. } => {
                 let unit = ProbeQuantity::ALL.iter().map(|of| of.name()).find(|(name, _)| name == quantity);
                 let unit = unit.map_or("", |(_, unit)| unit);
                 let turns = turns.map_or_else(String::new, |turns| format!(", a {turns}"));
-                let value = format!("{} {unit}", number(*value));
-                let at = format!("{} s: {quantity} = {}{turns}", number(*time), value.trim_end());
+                let value = format!("{} {unit}", known(*value, error.value));
+                let time = known(*time, Some(error.time));
+                let at = format!("{time} s{unknown}: {quantity} = {}{turns}", value.trim_end());
                 row(&format!("event at {probe}"), at);
             }
             Event::Contact { time, contact, touches, impulse } => {
-                let mut what = format!("{} s: {}", number(*time), if *touches { "begins" } else { "ends" });
-                if let Some(ContactImpulse { impulse: [x, y], largest_force }) = impulse {
-                    let (x, y, force) = (number(*x), number(*y), number(*largest_force));
+                let time = known(*time, Some(error.time));
+                let mut what = format!("{time} s{unknown}: {}", if *touches { "begins" } else { "ends" });
+                if let Some(ContactImpulse { impulse, largest_force }) = impulse {
+                    let [x, y] = impulse.map(|part| known(part, error.impulse));
+                    let force = known(*largest_force, error.largest_force);
                     what.push_str(&format!(", impulse ({x}, {y}) N s, up to {force} N"));
                 }
                 row(&format!("contact {contact}"), what);
@@ -413,8 +418,8 @@ mod tests {
     use crate::model::{Dynamic, Integrator, STEP_CONTROL, Static};
     use crate::output::OutputError;
     use crate::results::{
-        BucklingMode, CriticalLoads, Energy, ProbeSeries, Seconds, Statistics, Trajectory, Vibration,
-        Vibrations,
+        BucklingMode, CriticalLoads, Energy, EventErrors, ProbeSeries, Seconds, Statistics, Trajectory,
+        Vibration, Vibrations,
     };
     use crate::scene::{self, SceneError};
     use indicatif::TermLike;
@@ -719,13 +724,21 @@ mod tests {
                 },
             ],
             events: vec![
-                Event::Probe { time: 0.5, probe: "tip".into(), quantity: "y", value: -0.125, turns: None },
+                Event::Probe {
+                    time: 0.5,
+                    probe: "tip".into(),
+                    quantity: "y",
+                    value: -0.125,
+                    turns: None,
+                    rates: [0.0; 2],
+                },
                 Event::Probe {
                     time: 0.5625,
                     probe: "tip".into(),
                     quantity: "angle",
                     value: 0.75,
                     turns: Some("maximum"),
+                    rates: [0.0; 2],
                 },
                 Event::Contact { time: 0.625, contact: "arm.1".into(), touches: true, impulse: None },
                 Event::Contact {
@@ -751,6 +764,43 @@ Arm
   seconds        build 0.125, solve 1.500, write 0.062
   report         out/arm/report.html";
         assert_eq!(table(&trajectory.into(), Path::new("out/arm")), expected);
+    }
+
+    /// Digits end where the errors are; of an event that no other run has, or whose quantity tells nothing, none is known.
+    #[test]
+    fn events_have_the_digits_that_are_known() {
+        let probe = |time: f64, turns: Option<&'static str>| Event::Probe {
+            time,
+            probe: "tip".into(),
+            quantity: "y",
+            value: -0.125,
+            turns,
+            rates: [0.0; 2],
+        };
+        let impulse = Some(ContactImpulse { impulse: [0.5, -0.25], largest_force: 32.0 });
+        let events = vec![
+            probe(0.5, None),
+            probe(0.5625, Some("minimum")),
+            probe(0.75, Some("minimum")),
+            Event::Contact { time: 0.6875, contact: "arm.1".into(), touches: false, impulse },
+        ];
+        let errors = vec![
+            EventErrors { time: 2e-4, ..EventErrors::default() },
+            EventErrors { time: 0.03, value: Some(2e-3), ..EventErrors::default() },
+            EventErrors { value: Some(f64::INFINITY), ..EventErrors::UNKNOWN },
+            EventErrors { time: 1e-3, value: None, impulse: Some(0.01), largest_force: Some(2.0) },
+        ];
+        let error = Some(Box::new(ErrorEstimate { events: errors, ..ErrorEstimate::default() }));
+        let run = Run { analysis: AnalysisKind::Dynamic, error, ..Run::default() };
+        let text = table(&Trajectory { run, events, ..Trajectory::default() }.into(), Path::new("arm"));
+        let rows: Vec<&str> = text.lines().filter(|line| line.contains(" s")).map(str::trim).collect();
+        let expected = [
+            "event at tip   0.5000(2) s: y = -0.125 m",
+            "event at tip   0.56(3) s: y = -0.125(2) m, a minimum",
+            "event at tip   0.75 s (error unknown): y = -0.125 m, a minimum",
+            "contact arm.1  0.688(1) s: ends, impulse (0.50(1), -0.25(1)) N s, up to 32(2) N",
+        ];
+        assert_eq!(&rows[..4], expected);
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use serde::{Serialize, Serializer};
 
 use crate::results::{
-    AnalysisKind, Energy, ErrorEstimate, Event, LargestStress, ProbeSample, Reaction, Results, RunForError,
-    Seconds, SectionForces, Shape, Statistics, Tension,
+    AnalysisKind, Energy, ErrorEstimate, Event, EventErrors, LargestStress, ProbeSample, Reaction, Results,
+    RunForError, Seconds, SectionForces, Shape, Statistics, Tension,
 };
 
 /// The contents of `summary.json`; keys and their order are those of the fields.
@@ -38,7 +38,7 @@ pub struct Summary {
     pub energy: Option<EnergySummary>,
     /// Events of a motion, in order; left out where none was asked for or none happened.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub events: Vec<Event>,
+    pub events: Vec<EventSummary>,
     /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis
     /// only.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -113,6 +113,17 @@ pub struct ProbeSummary {
     /// place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ProbeSample>,
+}
+
+/// Something that happened in a motion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EventSummary {
+    /// What, and when.
+    #[serde(flatten)]
+    pub event: Event,
+    /// The estimated errors, where errors are known; an infinite one, of which nothing is known, becomes `null`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<EventErrors>,
 }
 
 /// The estimated errors of the results.
@@ -246,7 +257,15 @@ impl Summary {
                 total: last.total(),
                 drift: drift(&trajectory.energy),
             }),
-            events: trajectory.events.clone(),
+            events: trajectory
+                .events
+                .iter()
+                .enumerate()
+                .map(|(i, event)| EventSummary {
+                    event: event.clone(),
+                    error: error.and_then(|error| error.events.get(i)).copied(),
+                })
+                .collect(),
             frequency_errors: absolute(AnalysisKind::Modal),
             load_factor_errors: absolute(AnalysisKind::Buckling),
             frequencies: (run.analysis == AnalysisKind::Modal).then(|| results.eigenvalues()),

@@ -163,6 +163,9 @@ pub enum Event {
         /// Whether it turned back there: `maximum` or `minimum`.
         #[serde(skip_serializing_if = "Option::is_none")]
         turns: Option<&'static str>,
+        /// Its first and second derivative there, in its unit per second and per square second; not written.
+        #[serde(skip)]
+        rates: [f64; 2],
     },
     /// A beam touched an obstacle, or came free of it.
     Contact {

@@ -993,7 +993,7 @@ impl<'a> Sampler<'a> {
                 None => self.shape(&state.q),
             };
         }
-        for &(watch, time, value) in &solution.events {
+        for &dynamics::ProbeEvent { watch, time, value, rates } in &solution.events {
             let EventCondition { probe, quantity, when, .. } = &settings.events[watch];
             let turns = match when {
                 EventKind::Reaches { .. } => None,
@@ -1001,7 +1001,7 @@ impl<'a> Sampler<'a> {
                 EventKind::Minimum => Some("minimum"),
             };
             let (probe, quantity) = (probe.clone(), quantity.name().0);
-            trajectory.events.push(Event::Probe { time, probe, quantity, value, turns });
+            trajectory.events.push(Event::Probe { time, probe, quantity, value, turns, rates });
         }
         if let Some((watch, time)) = solution.unseen {
             let EventCondition { probe, quantity, .. } = &settings.events[watch];

@@ -48,7 +48,7 @@ use crate::system::Reaction;
 use serde::{Deserialize, Serialize};
 
 pub use contact::Change;
-pub use event::{EventWatch, Observed, Quantity, least_change};
+pub use event::{EventWatch, Observed, ProbeEvent, Quantity, least_change};
 pub use integrate::{Checkpointing, STEP_PART, Task, solve};
 pub use memory::Memory;
 
@@ -150,8 +150,8 @@ pub struct Solution {
     pub end: Option<motion::Balance>,
     /// Attempted steps, thinned out where there are very many.
     pub history: Vec<StepRecord>,
-    /// Events in the order of their times: number of the watch, time \[s\], value of the quantity.
-    pub events: Vec<(usize, f64, f64)>,
+    /// Events in the order of their times.
+    pub events: Vec<ProbeEvent>,
     /// The first watch whose quantity was not known, and from when on \[s\].
     pub unseen: Option<(usize, f64)>,
     /// Contacts in which the beam was pushed past the middle of the obstacle: the number of the

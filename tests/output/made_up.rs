@@ -243,7 +243,14 @@ pub(super) fn swing() -> Trajectory {
             step(0.08, 0.03, &[2e-3, 1e-8], &[1e-3, 1e-9]),
         ],
         events: vec![
-            Event::Probe { time: 0.03, probe: "end".into(), quantity: "x", value: 0.48, turns: None },
+            Event::Probe {
+                time: 0.03,
+                probe: "end".into(),
+                quantity: "x",
+                value: 0.48,
+                turns: None,
+                rates: [0.0; 2],
+            },
             Event::Contact { time: 0.04, contact: "arm.1".to_owned(), touches: true, impulse: None },
             Event::Contact {
                 time: 0.06,

@@ -621,7 +621,7 @@ fn events_are_located_to_the_accuracy_of_the_motion() {
             let task = Task { watches: &watches, ..task(&system, 2.0, integrator) };
             let solution = finished(solve(&system, &task, &mut |_, _, _| true));
             let time = (2.0 / -GRAVITY[1]).sqrt();
-            let numbers: Vec<usize> = solution.events.iter().map(|(watch, ..)| *watch).collect();
+            let numbers: Vec<usize> = solution.events.iter().map(|event| event.watch).collect();
             assert_eq!(numbers, [1, 2], "the rising one does not happen");
             assert!((last(&solution).time - time).abs() < 1e-9, "{} instead of {time}", last(&solution).time);
             // A method goes on from before the step that the event cuts short, which is taken once

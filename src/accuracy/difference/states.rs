@@ -1,5 +1,6 @@
 //! By how much equilibria and motions differ.
 
+use super::events::events;
 use super::places::{interpolated, is_before, is_twice, same_place};
 use super::section_forces::section_forces;
 use super::stations::parts;
@@ -52,7 +53,11 @@ pub fn states<'t>(
         pairs.retain(|(_, j)| *j > 0);
     }
     let lengths: Vec<f64> = meshes.iter().map(Mesh::length).collect();
-    let mut difference = Difference { records: vec![0.0; fine.parameter.len()], ..Difference::default() };
+    let mut difference = Difference {
+        records: vec![0.0; fine.parameter.len()],
+        events: events(&fine.events, [&coarse.events, &fine.events]),
+        ..Difference::default()
+    };
     let mut result = 0.0_f64;
     for ((probe, a), b) in model.probes.iter().zip(&coarse.probes).zip(&fine.probes) {
         let mut samples = vec![ProbeSample::default(); fine.parameter.len()];

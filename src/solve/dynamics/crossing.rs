@@ -118,7 +118,8 @@ impl Polynomial {
         less
     }
 
-    fn derivative(&self) -> Self {
+    /// Its derivative.
+    pub(super) fn derivative(&self) -> Self {
         let mut derivative = [0.0; DEGREE + 1];
         for (k, c) in self.0.iter().enumerate().skip(1) {
             derivative[k - 1] = k as f64 * c;

@@ -102,6 +102,19 @@ pub(super) struct Watched {
     turned: Option<f64>,
 }
 
+/// An event of a watched quantity.
+#[derive(Clone, Copy, Debug)]
+pub struct ProbeEvent {
+    /// Number of the watch.
+    pub watch: usize,
+    /// When \[s\].
+    pub time: f64,
+    /// Value of the quantity.
+    pub value: f64,
+    /// Its first and second derivative there \[1/s, 1/s²\].
+    pub rates: [f64; 2],
+}
+
 /// A part of a step, from 0 to 1, and the quantity on it.
 type Piece = ([f64; 2], Polynomial);
 
@@ -124,8 +137,8 @@ impl Driver<'_, '_> {
             StepControl::Tolerance(tolerance) => (NOISE_OF_FORCES * tolerance).clamp(NOISE, LARGEST_NOISE),
         };
         let mut within = Within::default();
-        // Place in the step, number and value of each.
-        let mut found: Vec<(f64, usize, f64)> = Vec::new();
+        // With the place of each in the step.
+        let mut found: Vec<(f64, ProbeEvent)> = Vec::new();
         for (number, watch) in task.watches.iter().enumerate() {
             let (pieces, along) = self.pieces(watch, new, accelerations, &mut within);
             if pieces.iter().any(|(_, piece)| !(piece.at(0.0)[0] + piece.at(1.0)[0]).is_finite()) {
@@ -163,17 +176,21 @@ impl Driver<'_, '_> {
             };
             memory.value = pieces.last().map(|(_, piece)| piece.at(1.0)[0]);
             let later = events.into_iter().filter(|(at, _)| self.state.time + at * h > self.first.time);
-            found.extend(later.map(|(at, value)| (at, number, watched(value))));
+            found.extend(later.map(|(at, value)| {
+                let (value, rates) = (watched(value), rates(&pieces, at, h, watch.is_square));
+                (at, ProbeEvent { watch: number, time: self.state.time + at * h, value, rates })
+            }));
         }
         // Among simultaneous events, one that ends the motion comes last.
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(task.watches[a.1].stop.cmp(&task.watches[b.1].stop)));
-        for (at, number, value) in found {
+        let stops = |event: &ProbeEvent| task.watches[event.watch].stop;
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(stops(&a.1).cmp(&stops(&b.1))));
+        for (at, event) in found {
             let state = match at {
-                _ if at < 1.0 => self.between(new, self.state.time + at * h, accelerations),
+                _ if at < 1.0 => self.between(new, event.time, accelerations),
                 _ => new.clone(),
             };
-            self.solution.events.push((number, state.time, value));
-            if task.watches[number].stop {
+            self.solution.events.push(ProbeEvent { time: state.time, ..event });
+            if stops(&event) {
                 return Some(state);
             }
         }
@@ -277,6 +294,21 @@ fn at<T>(known: &mut Vec<(f64, T)>, x: f64, find: impl FnOnce() -> T) -> &T {
         known.len() - 1
     });
     &known[index].1
+}
+
+/// The first and second derivative of a quantity, or of the root of one that is a square, at a place in a step of length `h`.
+fn rates(pieces: &[Piece], at: f64, h: f64, is_square: bool) -> [f64; 2] {
+    let piece = pieces.iter().find(|([_, to], _)| at <= *to).or(pieces.last());
+    let Some(([from, to], piece)) = piece else { return [0.0; 2] };
+    let (x, h) = ((at - from) / (to - from), h * (to - from));
+    let [value, slope] = piece.at(x);
+    let [first, second] = [slope / h, piece.derivative().at(x)[1] / (h * h)];
+    if !is_square {
+        return [first, second];
+    }
+    let root = value.max(0.0).sqrt();
+    let of_root = first / (2.0 * root);
+    [of_root, (0.5 * second - of_root * of_root) / root]
 }
 
 /// Where the quantity reaches `value`, and the value. What is nearer to it than `near` is at it.
