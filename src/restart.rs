@@ -621,7 +621,7 @@ mod tests {
     }
 
     /// Would catch an angle that is taken up at another probe than its own, and so is wrong by full
-    /// turns. The beam is straight: a new place has the direction of the nearest one.
+    /// turns. The beam is nearly straight: a new place has the direction of the nearest one.
     #[test]
     fn angles_stay_with_their_probes() {
         let probes = |places: &[f64]| {
@@ -636,7 +636,7 @@ mod tests {
         let (taken, _) = taken(&state, &probes(&[1.0, 0.75, 0.25]), true).expect("the same beams");
         for state in [&taken.state].into_iter().chain(&taken.cut) {
             assert_eq!((state.angles[0], state.angles[2], state.angles.len()), (9.0, 7.0, 3));
-            assert_eq!(state.angles[1], 8.0);
+            assert!((state.angles[1] - 8.0).abs() < 0.01, "{:?}", state.angles);
         }
     }
 }

@@ -146,10 +146,14 @@ fn every_column_of_every_file_has_a_value_test() {
         analysis.dynamic = { duration = 0.6, output_every = 0.2, event = [{ probe = 'end', y = 0.1 }] }\n";
     let held = beam.replace("fix = ['x', 'y'] }", "fix = ['x', 'y', 'angle'] }");
     let bent = held.replace("value = [-1e-3, 0]", "value = [-1e-3, 1]");
-    let open = bent.replace(", basis.ancf.elements = 4", "");
+    let [open, loose] = [&bent[..], beam].map(|text| text.replace(", basis.ancf.elements = 4", ""));
+    let bouncing = moving
+        .replace("output_every = 0.2", "output_every = 0.2, accuracy = 1e-2")
+        .replace(" y = 0.1", " minimum = 'y'");
     let short = bent.replace("axial_stiffness = 1e3", "axial_stiffness = 1e2");
     let written = [
         Written::of(&format!("{beam}{moving}")),
+        Written::of(&format!("{loose}{bouncing}")),
         Written::of(&format!("{held}analysis.static = {{}}\n")),
         Written::of(&format!("{held}analysis.modal.count = 2\n")),
         Written::of(&format!("{held}analysis.buckling.count = 2\n")),

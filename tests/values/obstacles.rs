@@ -209,6 +209,26 @@ fn a_bounce_gives_twice_the_momentum() {
     }
     assert_eq!((events[0]["touches"].as_bool(), events[1]["touches"].as_bool()), (Some(true), Some(false)));
     found.ends("probes.csv", &[("end.vy", 1.0), ("end.vx", 0.1)], 1e-5);
+    // With an accuracy alone all of them are as right as is told.
+    let told = Written::of(
+        &text.replace("basis.ancf.elements = 2", "").replace("radau.tolerance = 1e-8", "accuracy = 1e-3"),
+    );
+    let events = told.summary()["events"].clone();
+    let number = |event: usize, pointer: &str| {
+        let found = events[event].pointer(pointer).and_then(|value| value.as_f64());
+        found.unwrap_or_else(|| panic!("{pointer} in {events}"))
+    };
+    for (event, value, error, expected) in [
+        (0, "/time", "/error/time", 0.2),
+        (1, "/time", "/error/time", 0.2 + std::f64::consts::PI / frequency),
+        (1, "/impulse/0", "/error/impulse", 0.0),
+        (1, "/impulse/1", "/error/impulse", 4.0),
+        (1, "/largest_force", "/error/largest_force", 2.0 * frequency),
+    ] {
+        let (found, error) = (number(event, value), number(event, error));
+        assert!((found - expected).abs() <= 3.0 * error + 1e-9, "{value}: {found} ± {error} for {expected}");
+        assert!(error < 0.02 * expected.abs().max(0.1), "{value}: {error}");
+    }
 }
 
 /// A rod that begins within the ground is thrown out by energy that nothing put in, and that is said; one that begins as deep

@@ -1157,7 +1157,8 @@ fn full_turns_of_a_support_are_counted_however_few_states_are_kept() {
             "analysis.static.steps = 2",
             "analysis.modal = { count = 1, about = 'equilibrium' }",
         ] {
-            let [start, tip] = turned(turn, gravity, analysis)[..] else { panic!("two probes") };
+            let stage = format!("stage = [{{ name = 'one', {analysis} }}]");
+            let [start, tip] = turned(turn, gravity, &stage)[..] else { panic!("two probes") };
             assert!((start - sign * full).abs() < 1e-9, "{turn}, {analysis}: {start}");
             assert!((tip - sign * full).abs() < 2.0_f64.to_radians(), "{turn}, {analysis}: {tip}");
         }
