@@ -83,10 +83,17 @@ impl Stages {
             let ahead = stage - node;
             let nodes = &mut entries[node..=stage];
             for (kind, row) in slots.iter().enumerate().filter(|(_, row)| **row != NONE) {
-                for &(i, value) in &border[*row as usize] {
+                let mut left = &border[*row as usize][..];
+                while let Some(&(i, value)) = left.first() {
                     let place = i / 4 - node;
-                    if let Some(entries) = nodes.get_mut(place) {
-                        entries.rows[kind + 2 * (ahead - place)][i % 4] = value;
+                    // Entries ascend, and most rows hold all of a node.
+                    let whole = left.first_chunk::<4>().filter(|four| i % 4 == 0 && four[3].0 == i + 3);
+                    left = &left[if whole.is_some() { 4 } else { 1 }..];
+                    let Some(entries) = nodes.get_mut(place) else { continue };
+                    let target = &mut entries.rows[kind + 2 * (ahead - place)];
+                    match whole {
+                        Some(four) => *target = four.map(|(_, value)| value),
+                        None => target[i % 4] = value,
                     }
                 }
             }

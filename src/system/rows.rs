@@ -381,10 +381,8 @@ impl System {
 /// cells before.
 fn add_entries(row: &mut BorderRow, first: usize, entries: &[f64]) {
     let start = row.first().map_or(first, |(i, _)| *i);
-    for (i, value) in (first..).zip(entries) {
-        match row.get_mut(i - start) {
-            Some((_, sum)) => *sum += value,
-            None => row.push((i, *value)),
-        }
-    }
+    let known = row.get_mut(first - start..).unwrap_or_default();
+    let (shared, new) = entries.split_at(known.len().min(entries.len()));
+    known.iter_mut().zip(shared).for_each(|((_, sum), value)| *sum += value);
+    row.extend((first + shared.len()..).zip(new.iter().copied()));
 }

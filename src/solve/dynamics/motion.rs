@@ -98,6 +98,8 @@ pub struct Motion<'a> {
     border: Vec<BorderRow>,
     /// Whether the last step is much too long for vibrations of the mesh.
     pub vibrates: bool,
+    /// About the square ω² \[1/s²\] of the fastest vibration with the last tangent, where constraint rows depend on the state.
+    fastest: f64,
     /// Tangent of elastic forces and loads in the supports' frames, fixed coordinates eliminated.
     tangent: Matrix,
     /// Damping matrix in the same form; none if no force depends on velocities.
@@ -160,6 +162,7 @@ impl<'a> Motion<'a> {
             mass_border: Vec::new(),
             border,
             vibrates: false,
+            fastest: 0.0,
             tangent: system.matrix(),
             damping: system.is_damped().then(|| system.damping_pattern()),
             carries,
@@ -454,6 +457,9 @@ impl<'a> Motion<'a> {
         }
         if system.has_turning_inertia() || system.turns() {
             [self.free_mass, _] = free_mass(system, rates.time, &x[..n], &self.mass);
+        }
+        if self.follows {
+            self.fastest = self.fastest();
         }
         self.statistics.tangent_evaluations += 1;
     }

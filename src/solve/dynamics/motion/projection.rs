@@ -79,7 +79,7 @@ impl Motion<'_> {
         }
         self.mass_at(state.time, &state.q)?;
         let is_fed = self.system.works_by_constraints();
-        self.vibrates = self.follows && !is_fed && self.fastest() > FAST * matrix.inertia;
+        self.vibrates = self.follows && !is_fed && self.fastest > FAST * matrix.inertia;
         for (moved, time) in [(Moved::Positions, 1.0), (Moved::Velocities, matrix.step)] {
             let change = self.correct(moved, state);
             if !self.vibrates {
@@ -175,7 +175,7 @@ impl Motion<'_> {
     }
 
     /// About the square ω² \[1/s²\] of the fastest vibration: the largest that one coordinate alone has in the last tangent.
-    fn fastest(&self) -> f64 {
+    pub(super) fn fastest(&self) -> f64 {
         let alone = |i: usize| {
             let mass = self.free_mass.get(i, i);
             if mass > 0.0 { self.tangent.get(i, i) / mass } else { 0.0 }
