@@ -1,10 +1,13 @@
 //! Errors of single records, places and events, as they are stated.
 
 use crate::model::{Model, Place, ProbeQuantity};
-use crate::results::{Event, EventErrors, ProbeErrors, ProbeSample, Trajectory};
+use crate::results::{ContactImpulse, Event, EventErrors, ProbeErrors, ProbeSample, Trajectory};
 
 /// The records around one whose errors count for it, on either side, as a part of the run.
 const WINDOW: usize = 20;
+
+/// Part of the largest relative error of a contact that those of its other numbers are at least.
+const LEAST: f64 = 0.2;
 
 /// Errors oscillate, and a moment at which two runs agree by chance is no better than those around
 /// it: the largest within a twentieth of the run on either side.
@@ -68,7 +71,42 @@ pub(super) fn of_events(
         error.time = shift.map_or(f64::INFINITY, |shift| error.time.max(shift));
         error.value = error.value.map(|seen| seen.max(value.unwrap_or(f64::INFINITY)));
     }
+    of_contacts(&mut errors, &motion.events);
+    for (error, event) in errors.iter_mut().zip(&motion.events) {
+        error.time = error.time.max(f64::EPSILON * event.time());
+    }
     errors
+}
+
+/// What is known of a contact errs alike: of its duration, its impulse and its largest force none by less than a part of the largest
+/// relative error.
+fn of_contacts(errors: &mut [EventErrors], events: &[Event]) {
+    for (end, event) in events.iter().enumerate() {
+        let Event::Contact {
+            time,
+            contact,
+            impulse: Some(ContactImpulse { impulse: [x, y], largest_force }),
+            ..
+        } = event
+        else {
+            continue;
+        };
+        let begins = |event: &Event| matches!(event, Event::Contact { contact: of, touches: true, .. } if of == contact);
+        let Some(begin) = events[..end].iter().rposition(begins) else { continue };
+        let (duration, impulse) = (time - events[begin].time(), x.hypot(*y));
+        let relative = |error: f64, of: f64| if error.is_finite() && of > 0.0 { error / of } else { 0.0 };
+        let EventErrors { time, impulse: of_impulse, largest_force: of_force, .. } = errors[end];
+        let largest = relative(time, duration)
+            .max(relative(errors[begin].time, duration))
+            .max(relative(of_impulse.unwrap_or(0.0), impulse))
+            .max(relative(of_force.unwrap_or(0.0), *largest_force));
+        let least = |scale: f64| LEAST * largest * scale;
+        for error in [begin, end] {
+            errors[error].time = errors[error].time.max(least(duration));
+        }
+        errors[end].impulse = of_impulse.map(|error| error.max(least(impulse)));
+        errors[end].largest_force = of_force.map(|error| error.max(least(*largest_force)));
+    }
 }
 
 /// The error of a quantity in that of what its probe sees, at this place.
@@ -165,5 +203,38 @@ mod tests {
         assert_eq!(of("bending_moment", None, [8.0, 0.0], 0.0), (0.5, None));
         assert_eq!(of("axial_force", None, [8.0, 0.0], 0.0), (1.0, None));
         assert_eq!(of("shear_force", Some("maximum"), [8.0, 0.0], 0.0), (f64::INFINITY, Some(f64::INFINITY)));
+    }
+
+    /// A contact of 2 s with an impulse of 10 N s and up to 8 N, of which the duration errs by half: nothing errs by less than a tenth.
+    /// Of another one, and where nothing is known, it tells nothing; and no time is better known than its round-off.
+    #[test]
+    fn all_numbers_of_a_contact_err_alike() {
+        let contact = |time: f64, contact: &str, touches: bool| {
+            let impulse = (!touches).then_some(ContactImpulse { impulse: [6.0, -8.0], largest_force: 8.0 });
+            Event::Contact { time, contact: contact.into(), touches, impulse }
+        };
+        let events = vec![
+            contact(1.0, "arm.1", true),
+            contact(1.0, "arm.1", false),
+            contact(2.0, "arm.1", true),
+            contact(2.0, "leg.1", true),
+            contact(4.0, "arm.1", false),
+            contact(6.0, "leg.1", false),
+        ];
+        let ended = |time, impulse, largest_force| EventErrors {
+            time,
+            value: None,
+            impulse: Some(impulse),
+            largest_force: Some(largest_force),
+        };
+        let at = |time: f64| EventErrors { time, ..EventErrors::default() };
+        let none = ended(0.0, 0.0, 0.0);
+        let errors = vec![at(0.0), none, at(1.0), at(0.0), ended(0.0, 2.0, 0.0), EventErrors::UNKNOWN];
+        let motion = Trajectory { events, ..Trajectory::default() };
+        let found = of_events(errors, &Model::default(), &motion, &[]);
+        assert_eq!(found[0], at(f64::EPSILON));
+        assert_eq!(found[1], EventErrors { time: f64::EPSILON, ..none });
+        assert_eq!((found[2], found[4]), (at(1.0), ended(0.2, 2.0, 0.8)));
+        assert_eq!((found[3], found[5]), (at(2.0 * f64::EPSILON), EventErrors::UNKNOWN));
     }
 }

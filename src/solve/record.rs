@@ -46,7 +46,7 @@ pub struct Statistics {
 pub struct ContactImpulse {
     /// ∫ F dt \[N s\].
     pub impulse: [f64; 2],
-    /// The largest \|F\| \[N\] at three points of every step.
+    /// The largest \|F\| \[N\], from parabolas through points of every step.
     pub largest_force: f64,
 }
 

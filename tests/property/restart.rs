@@ -437,3 +437,30 @@ fn a_support_does_not_stop_a_slow_motion() {
         "{error}"
     );
 }
+
+/// A rod of 1 kg that falls flat on ground of 20 kN/m² is stopped within it, while it comes up again, and goes on from there: the largest
+/// force of the rest is the one with which it begins.
+#[test]
+fn a_contact_that_goes_on_has_no_force_of_the_past() {
+    let fall = "beam.rod = { start = [0, 0.3], end = [1, 0.3], axial_stiffness = 1e4, bending_stiffness = 5, mass_per_length = 1, \
+        basis.ancf.elements = 4 }
+        effect.gravity.acceleration = [0, -9.81]
+        effect.contact = [{ beam = 'rod', half_plane = { point = [0, 0], normal = [0, 1] }, stiffness = 2e4 }]
+        probe = [{ name = 'middle', beam = 'rod', at = 0.5 }]\n";
+    for method in [
+        "radau.tolerance = 1e-5",
+        "gauss.tolerance = 1e-5",
+        "radau.step = 1e-3",
+        "generalized_alpha.tolerance = 1e-4",
+    ] {
+        let motion =
+            |duration: f64| format!("{fall}analysis.dynamic = {{ duration = {duration}, {method} }}");
+        let first = solve(&motion(0.2688));
+        let rest = go_on(&motion(0.05), &first).expect("a motion");
+        let Some(Event::Contact { impulse: Some(impulse), .. }) = rest.events.last() else {
+            panic!("{method}: {:?}", rest.events)
+        };
+        let force = -2e4 * first.probes[0].samples.last().expect("a sample").y;
+        assert!((impulse.largest_force / force - 1.0).abs() < 2e-3, "{method}: {impulse:?} for {force}");
+    }
+}

@@ -340,6 +340,7 @@ fn errors_of_times_and_values_of_events_are_told() {
         let (value, told) = (number(&lowest["value"]), number(&lowest["error"]["value"]));
         assert!((value + length).abs() <= 3.0 * told + 1e-7, "{accuracy}: {value}, {told} told");
         assert!(crossing["error"].get("value").is_none(), "what is reached is given");
+        assert_eq!((crossing.get("turns"), &lowest["turns"]), (None, &"minimum".into()));
         let told = number(&crossing["error"]["time"]);
         assert!(told < 0.3 * told_before, "{accuracy}: {told} after {told_before}");
         told_before = told;

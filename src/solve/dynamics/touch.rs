@@ -28,6 +28,29 @@ const NEAR: f64 = 1e-6;
 /// Part of a step after which it is first checked whether a contact slides.
 const BEGUN: f64 = 1e-2;
 
+/// Places in a step and weights of Simpson's rule.
+const SIMPSON: [(f64, f64); 3] = [(0.0, 1.0 / 6.0), (0.5, 4.0 / 6.0), (1.0, 1.0 / 6.0)];
+
+/// The largest value of three or more points (place, value): that of the parabola through the largest of them and its two neighbours, or
+/// through the last three points at an end, where its vertex lies between these.
+fn peak(points: &[(f64, f64)]) -> f64 {
+    let largest = points.iter().enumerate().max_by(|(_, a), (_, b)| a.1.total_cmp(&b.1));
+    let Some((index, &(_, size))) = largest else { return 0.0 };
+    let first = index.clamp(1, points.len().max(3) - 2) - 1;
+    let Some([(a, fa), (b, fb), (c, fc)]) = points.get(first..).and_then(<[_]>::first_chunk::<3>) else {
+        return size;
+    };
+    let [left, right] = [(fb - fa) / (b - a), (fc - fb) / (c - b)];
+    let bend = (right - left) / (c - a);
+    // The slope in the middle of the first two points is `left`.
+    let vertex = 0.5 * (a + b) - 0.5 * left / bend;
+    if bend < 0.0 && vertex > *a && vertex < *c {
+        size.max(fa + (vertex - a) * (left + bend * (vertex - b)))
+    } else {
+        size
+    }
+}
+
 impl Driver<'_, '_> {
     /// Refuses a step to `new` that leads through an obstacle, and one of fixed length whose
     /// equations would not see that it touches one.
@@ -127,7 +150,8 @@ impl Driver<'_, '_> {
 
     /// Adds up the impulses of contacts in the step to `new`, and records those that begin or end
     /// in it. Within a step of second order Simpson's rule is enough for an impulse, and the force
-    /// at its start is known; others are summed at three Gauss points.
+    /// at its start is known; others are summed at three Gauss points. The largest force is that of parabolas through these points and the
+    /// ends of the step.
     pub(super) fn notice_contacts(&mut self, new: &State) {
         for contact in 0..self.touching.len() {
             let ContactState { touches: touched, mut impulse, force: before, mut crossed, deep } =
@@ -145,33 +169,34 @@ impl Driver<'_, '_> {
                 self.first_change(new, 1.0, |state| self.system.touches(contact, &state.q) == touches)
                     .unwrap_or(new.time)
             });
-            if touched || touches {
+            // What acts before a motion goes on where another one has ended belongs to that one.
+            if (touched || touches) && new.time > self.first.time {
                 let (begin, end) = match time {
                     Some(time) if touches => (time, new.time),
                     Some(time) => (self.state.time, time),
                     None => (self.state.time, new.time),
                 };
-                // What acts before a motion goes on where another one has ended belongs to that one.
                 let taken_up = begin < self.first.time;
                 let (begin, end) = (begin.max(self.first.time), end.max(self.first.time));
-                let within = |at: f64| {
-                    let state = self.state.between(new, begin + at * (end - begin), None);
-                    self.system.contact_force(contact, &state.q).unwrap_or_default()
+                let force_at = |at: f64| match at {
+                    0.0 if !taken_up => before,
+                    1.0 => force,
+                    _ => {
+                        let state = self.state.between(new, begin + at * (end - begin), None);
+                        self.system.contact_force(contact, &state.q).unwrap_or_default()
+                    }
                 };
-                let mut add = |weight: f64, force: [f64; 2]| {
-                    let weight = weight * (end - begin);
-                    impulse.impulse[0] += weight * force[0];
-                    impulse.impulse[1] += weight * force[1];
-                    impulse.largest_force = impulse.largest_force.max(force[0].hypot(force[1]));
-                };
-                if self.method.order() <= 2.0 {
-                    let before = if taken_up { within(0.0) } else { before };
-                    [(1.0, before), (4.0, within(0.5)), (1.0, force)]
-                        .into_iter()
-                        .for_each(|(weight, force)| add(weight / 6.0, force));
-                } else {
-                    GAUSS_3.into_iter().for_each(|(at, weight)| add(weight, within(at)));
+                let [first, second, third] = GAUSS_3;
+                let gauss = [(0.0, 0.0), first, second, third, (1.0, 0.0)];
+                let points = if self.method.order() <= 2.0 { &SIMPSON[..] } else { &gauss[..] };
+                let mut sizes = Vec::with_capacity(points.len());
+                for (at, weight) in points {
+                    let ([x, y], weight) = (force_at(*at), weight * (end - begin));
+                    impulse.impulse[0] += weight * x;
+                    impulse.impulse[1] += weight * y;
+                    sizes.push((*at, x.hypot(y)));
                 }
+                impulse.largest_force = impulse.largest_force.max(peak(&sizes));
             }
             if let Some(time) = time {
                 let ended = (!touches).then_some(impulse);
@@ -180,5 +205,23 @@ impl Driver<'_, '_> {
             }
             self.touching[contact] = ContactState { touches, impulse, force, crossed, deep };
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::peak;
+
+    /// 4 − (x − p)² at five places of a step, with its vertex within, at, or beyond these.
+    #[test]
+    fn the_largest_force_is_that_of_a_parabola() {
+        let places = [0.0, 0.125, 0.5, 0.875, 1.0];
+        let largest = |vertex: f64| peak(&places.map(|x| (x, 4.0 - (x - vertex) * (x - vertex))));
+        for vertex in [0.03, 0.2, 0.5, 0.6, 0.97] {
+            assert!((largest(vertex) - 4.0).abs() < 1e-14, "{vertex}: {}", largest(vertex));
+        }
+        assert_eq!([largest(-1.0), largest(2.0)], [3.0; 2], "what is beyond belongs to another step");
+        assert_eq!(peak(&places.map(|x| (x, x * x))), 1.0, "and no lowest value is largest");
+        assert_eq!(peak(&places.map(|x| (x, 2.0))), 2.0);
     }
 }
