@@ -145,8 +145,8 @@ fn stations(even: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<Side>) {
 /// From where the turns of directions are counted.
 #[derive(Clone, Copy)]
 pub(super) enum History<'h> {
-    /// Since this state, that of the record before, with the turns of all nodes since then where they are known.
-    Before(&'h [f64], &'h [f64]),
+    /// Since this load factor and state, those of the record before, with the turns of all nodes since then where they are known.
+    Before((f64, &'h [f64]), &'h [f64]),
     /// Directions at all probes, with full turns included already.
     Angles(&'h [f64]),
 }
@@ -599,18 +599,19 @@ impl<'a> Sampler<'a> {
             self.record_effects(trajectory, parameter, q, (velocity, variables));
         }
         let records = trajectory.parameter.len();
-        self.see_probes(&mut trajectory.probes, records, (history, q), velocity);
+        self.see_probes(&mut trajectory.probes, (records, parameter), (history, q), velocity);
     }
 
-    /// Adds what the probes see to their `series`, of which this is one of so many `records`.
+    /// Adds what the probes see to their `series`: in this one of so many `records`, at a load factor or time.
     fn see_probes(
         &self,
         series: &mut [ProbeSeries],
-        records: usize,
+        (records, load): (usize, f64),
         (history, q): (History<'_>, &[f64]),
         velocity: Option<&[f64]>,
     ) {
-        let mut turns = vec![None; self.system.beams().len()];
+        let mut of_strings = vec![None; self.system.beams().len()];
+        let mut turns = None;
         for (probe, (ProbePoint { beam, view, measure, reference_strain, .. }, series)) in
             self.probes.iter().zip(series).enumerate()
         {
@@ -624,26 +625,22 @@ impl<'a> Sampler<'a> {
                 History::Before(..) => None,
             };
             let angle = known.unwrap_or_else(|| {
-                let (before, from) = match (start, history) {
-                    (Some(start), _) => (Some(start), Some(view.fields(start).angle())),
-                    (None, History::Before(before, _)) => {
-                        (Some(before), series.samples.last().map(|sample| sample.angle))
-                    }
-                    (None, History::Angles(_)) => (None, None),
-                };
-                let part = &self.system.beams()[*beam];
+                let (now, part) = (fields.angle(), &self.system.beams()[*beam]);
                 let node = turning::nearest(part, view.s()[0]);
-                let known = match history {
-                    History::Before(_, turned) if start.is_none() => turned.get(part.first_node + node),
-                    _ => None,
-                };
-                let turned = known.copied().or_else(|| {
-                    let before = before?;
-                    let turns = turns[*beam].get_or_insert_with(|| turning::turns(part, before, q));
-                    Some(turns[node])
-                });
-                let turned = turned.unwrap_or(0.0);
-                unfold(fields.angle(), from.map(|angle| angle + turned))
+                match (start, history) {
+                    (Some(start), _) => {
+                        let turns = of_strings[*beam].get_or_insert_with(|| turning::turns(part, start, q));
+                        unfold(now, Some(view.fields(start).angle() + turns[node]))
+                    }
+                    (None, History::Before(before, turned)) => {
+                        let node = part.first_node + node;
+                        let found =
+                            || turns.get_or_insert_with(|| self.system.node_turns(before, (load, q)))[node];
+                        let turn = turned.get(node).copied().unwrap_or_else(found);
+                        unfold(now, series.samples.last().map(|sample| sample.angle + turn))
+                    }
+                    (None, History::Angles(_)) => now,
+                }
             });
             series.samples.push(ProbeSample {
                 x: fields.position[0],
@@ -664,10 +661,10 @@ impl<'a> Sampler<'a> {
     /// The directions at all probes in the last of some equilibria \[rad\], with the full turns since the start.
     pub(super) fn last_angles(&self, solution: &Solution) -> Vec<f64> {
         let mut series = vec![ProbeSeries::default(); self.probes.len()];
-        for (i, (_, x)) in solution.states.iter().enumerate() {
+        for (i, (load, x)) in solution.states.iter().enumerate() {
             self.see_probes(
                 &mut series,
-                i + 1,
+                (i + 1, *load),
                 (self.history(solution, i, &self.angles), self.coordinates_of(x)),
                 None,
             );
@@ -681,7 +678,8 @@ impl<'a> Sampler<'a> {
             None => History::Angles(angles),
             Some(before) => {
                 let turned = solution.turned.get(number).map_or(&[][..], |turned| turned);
-                History::Before(self.coordinates_of(&solution.states[before].1), turned)
+                let (load, x) = &solution.states[before];
+                History::Before((*load, self.coordinates_of(x)), turned)
             }
         }
     }

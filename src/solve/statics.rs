@@ -10,7 +10,6 @@ use crate::assembly::{InternalVariables, Kind};
 use crate::model::{ArcLength, Static};
 use crate::numeric::GOLDEN;
 use crate::solve::{Statistics, StepRecord, Work};
-use crate::system::turning::Turned;
 use crate::system::{System, View};
 
 /// Largest last increment, in beam lengths, with which stability and the path's tangent are judged.
@@ -55,7 +54,7 @@ pub struct Solution {
     pub variables: Vec<InternalVariables>,
     /// Work of the actuators up to each of them.
     pub work: Vec<Work>,
-    /// Where supports turn far, by how much the nodes of all beams have turned to each of them from the one before \[rad\].
+    /// By how much the nodes of all beams have turned to each of them from the one before \[rad\], where steps between them are not recorded.
     pub turned: Vec<Vec<f64>>,
     /// Attempted steps.
     pub history: Vec<StepRecord>,
@@ -113,8 +112,30 @@ impl Solution {
     ) {
         self.states.push((load, x.to_vec()));
         self.work.push(work);
-        self.turned.push(turned.take());
+        self.turned.push(std::mem::take(&mut turned.nodes));
         self.variables.push(equilibrium.internal_variables(x));
+    }
+}
+
+/// By how much the nodes of all beams have turned since the last record \[rad\], where steps between records are not recorded.
+#[derive(Default)]
+struct Turned {
+    follows: bool,
+    nodes: Vec<f64>,
+}
+
+impl Turned {
+    fn new(settings: &Static) -> Self {
+        Self { follows: settings.steps.is_some(), nodes: Vec::new() }
+    }
+
+    /// Adds a step from one state with its load factor to another.
+    fn add_step(&mut self, system: &System, before: (f64, &[f64]), now: (f64, &[f64])) {
+        if self.follows {
+            let turns = system.node_turns(before, now);
+            self.nodes.resize(turns.len(), 0.0);
+            self.nodes.iter_mut().zip(turns).for_each(|(sum, turn)| *sum += turn);
+        }
     }
 }
 
@@ -320,10 +341,10 @@ fn along_load(
     let mut known = path.last().stability;
     solution.unstable_start = known.filter(|stability| stability.is_unstable());
     let mut work = Work::default();
-    let mut turned = Turned::new(path.equilibrium.system());
+    let mut turned = Turned::new(settings);
     solution.record(path.equilibrium, 0.0, &path.last().x, work, &mut turned);
     let recorded = settings.steps.unwrap_or(1).max(1);
-    let of_turns = turned.parts().div_ceil(recorded);
+    let of_turns = path.equilibrium.system().parts_of_turns().div_ceil(recorded);
     let between = of_turns.max(steps_between(path.equilibrium.system(), settings, recorded));
     let parts = recorded.saturating_mul(between);
     let mut part = 1;
@@ -341,7 +362,7 @@ fn along_load(
             break Ok(());
         }
         if let Some([before, after]) = path.last_two() {
-            turned.add_step(path.equilibrium.system(), &before.x, &after.x);
+            turned.add_step(path.equilibrium.system(), (before.load, &before.x), (after.load, &after.x));
         }
         notice(&mut path, &mut known, &mut solution.events);
         let at_end = point.load >= end;
@@ -382,7 +403,7 @@ fn relaxed(
     observe: Observer<'_>,
 ) -> Result<(), NoStep> {
     let mut work = Work::default();
-    let mut turned = Turned::new(equilibrium.system());
+    let mut turned = Turned::new(settings);
     solution.record(equilibrium, 0.0, &x, work, &mut turned);
     // A support that turns far at once may as well turn the other way: steps that are not recorded lie between.
     let of_turns = (equilibrium.system().largest_turn() / LARGEST_TURN).ceil() as usize;
@@ -452,7 +473,7 @@ fn relaxed(
         }
         equilibrium.statistics.load_steps += 1;
         work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
-        turned.add_step(equilibrium.system(), &start, &x);
+        turned.add_step(equilibrium.system(), (load - step, &start), (load, &x));
         if part.is_multiple_of(between) {
             solution.record(equilibrium, load, &x, work, &mut turned);
         }

@@ -156,11 +156,10 @@ impl Constraint {
         }
     }
 
-    /// For a support that fixes a direction: by how much it turns this \[rad\].
-    pub fn turn(&self) -> Option<f64> {
+    /// For a support that fixes a direction: its angle \[rad\].
+    pub fn angle_of_support(&self) -> Option<&Prescribed> {
         match &self.row {
-            Row::Gradient { rotation, .. } => Some(rotation.change),
-            Row::Direction(angle) => Some(angle.change),
+            Row::Gradient { rotation: angle, .. } | Row::Direction(angle) => Some(angle),
             _ => None,
         }
     }

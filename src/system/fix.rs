@@ -38,8 +38,9 @@ impl System {
 
     /// The largest turn of a support \[rad\].
     pub fn largest_turn(&self) -> f64 {
-        let between = self.constraints.iter().filter_map(Constraint::turn);
-        self.supports.turns().chain(between).fold(0.0, |largest, turn| turn.abs().max(largest))
+        let at_nodes = self.supports.angles().map(|(_, angle)| angle);
+        let between = self.constraints.iter().filter_map(Constraint::angle_of_support);
+        at_nodes.chain(between).fold(0.0, |largest, angle| angle.change.abs().max(largest))
     }
 }
 

@@ -52,6 +52,11 @@ impl Polar {
         Self { pairs, welds, sliders }
     }
 
+    /// The nodes of the welds between two nodes.
+    pub fn welds(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.welds.iter().map(|(nodes, _)| *nodes)
+    }
+
     /// Whether there are no such pairs.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()

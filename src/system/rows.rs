@@ -177,7 +177,7 @@ impl System {
     }
 
     /// The place of a row, or the node of its first coordinate.
-    fn place_of_row(&self, row: &Constraint) -> (usize, f64) {
+    pub(super) fn place_of_row(&self, row: &Constraint) -> (usize, f64) {
         let (beam, node) = self.place_of(row.first());
         (beam, row.places().first().copied().unwrap_or(node))
     }

@@ -175,12 +175,13 @@ impl Supports {
         })
     }
 
-    /// By how much supports turn directions \[rad\].
-    pub fn turns(&self) -> impl Iterator<Item = f64> {
-        self.pairs.iter().filter_map(|RestrainedPair { restraint, .. }| match restraint {
+    /// The nodes whose directions are held, and the angles of these \[rad\].
+    pub fn angles(&self) -> impl Iterator<Item = (usize, &Prescribed)> {
+        self.pairs.iter().filter_map(|RestrainedPair { pair, restraint }| match restraint {
             Restraint::Position(_) => None,
-            Restraint::Gradient { rotation, .. } => Some(rotation.change),
-            Restraint::Direction(angle) => Some(angle.change),
+            Restraint::Gradient { rotation: angle, .. } | Restraint::Direction(angle) => {
+                Some((pair / 2, angle))
+            }
         })
     }
 

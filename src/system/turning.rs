@@ -1,66 +1,96 @@
 //! Angles that count turns: a tip that has gone round once stands at 2π, not at 0.
 
+use super::constraints::Constraint;
 use super::{System, View, unfold};
 use crate::assembly::{DiscretizedBeam, Node, nodes};
 use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 
-/// Turn of a support up to which one load step is believed to have turned some node of every beam by less than half a turn \[rad\].
+/// Turn of a support up to which one load step is believed to have turned what it carries by less than half a turn \[rad\].
 const FAR: f64 = FRAC_PI_2;
 
-/// How far the nodes of all beams have turned since it was last asked, where supports turn by more than [`FAR`] until load factor 1.
-#[derive(Debug, Default)]
-pub struct Turned {
-    parts: usize,
-    nodes: Vec<f64>,
-}
-
-impl Turned {
-    /// At the start of a path.
-    pub fn new(system: &System) -> Self {
-        let parts = (system.largest_turn() / FAR).ceil() as usize;
-        Self { parts: if parts > 1 { parts } else { 0 }, nodes: Vec::new() }
+impl System {
+    /// The parts of the load in each of which no support turns far.
+    pub fn parts_of_turns(&self) -> usize {
+        ((self.largest_turn() / FAR).ceil() as usize).max(1)
     }
 
-    /// The parts of the load in each of which no support turns far; none where a single one does.
-    pub fn parts(&self) -> usize {
-        self.parts
-    }
-
-    /// Adds a load step, in which no support turns far, from one state to another.
-    pub fn add_step(&mut self, system: &System, before: &[f64], now: &[f64]) {
-        if self.parts > 0 {
-            let of_step = system.beams().iter().flat_map(|part| turns(part, before, now));
-            if self.nodes.is_empty() {
-                self.nodes.extend(of_step);
-            } else {
-                self.nodes.iter_mut().zip(of_step).for_each(|(sum, turn)| *sum += turn);
+    /// By how much all nodes have turned between two states, each with its load factor \[rad\]. One load step may wind a beam up by
+    /// whole turns. But a support that holds a direction is known to have turned by so much, and the turns of the other nodes follow from
+    /// cell to cell, and across welds. On beams without any, some node has turned by less than half a turn: that which has turned least.
+    pub fn node_turns(&self, (from, before): (f64, &[f64]), (to, now): (f64, &[f64])) -> Vec<f64> {
+        let mut turns: Vec<f64> =
+            self.beams.iter().flat_map(|part| within_half_a_turn(part, before, now)).collect();
+        let range = |beam: usize| {
+            let part = &self.beams[beam];
+            part.first_node..part.first_node + part.basis.nodes().len()
+        };
+        let beam_of =
+            |node: usize| self.beams.partition_point(|part| part.first_node <= node).saturating_sub(1);
+        let at_nodes = self.supports.angles();
+        let between = self.constraints.iter().filter_map(|row: &Constraint| {
+            let (beam, s) = self.place_of_row(row);
+            Some((range(beam).start + nearest(&self.beams[beam], s), row.angle_of_support()?))
+        });
+        let mut found: Vec<(usize, f64)> =
+            at_nodes.chain(between).map(|(node, angle)| (node, angle.at(to) - angle.at(from))).collect();
+        let mut known = vec![false; self.beams.len()];
+        loop {
+            while let Some((node, turn)) = found.pop() {
+                let beam = beam_of(node);
+                if std::mem::replace(&mut known[beam], true) {
+                    continue;
+                }
+                follow(&mut turns, range(beam), node, turn);
+                let nodes = range(beam);
+                let welded = self.polar.welds().flat_map(|[a, b]| [[a, b], [b, a]]);
+                found.extend(
+                    welded.filter(|[here, _]| nodes.contains(here)).map(|[here, other]| (other, turns[here])),
+                );
             }
+            let left = (0..known.len()).filter(|beam| !known[*beam]).flat_map(range);
+            let Some(node) = left.min_by(|a, b| turns[*a].abs().total_cmp(&turns[*b].abs())) else {
+                return turns;
+            };
+            found.push((node, turns[node]));
         }
     }
-
-    /// The turns of the nodes, beam by beam \[rad\], counted from zero from now on; nothing where no support turns far.
-    pub fn take(&mut self) -> Vec<f64> {
-        std::mem::take(&mut self.nodes)
-    }
 }
 
-/// By how much the nodes of a beam have turned between two states. One load step may wind a beam up
-/// by whole turns. But some node, such as a clamped one, has turned by less than half a turn, and
-/// the turns of the others follow from cell to cell.
-pub fn turns(part: &DiscretizedBeam, before: &[f64], now: &[f64]) -> Vec<f64> {
+/// The turns of the nodes of a beam between two states, up to full turns \[rad\].
+fn within_half_a_turn<'q>(
+    part: &DiscretizedBeam,
+    before: &'q [f64],
+    now: &'q [f64],
+) -> impl Iterator<Item = f64> + use<'q> {
     let first = 4 * part.first_node;
     let all = first..first + 4 * part.basis.nodes().len();
     let angle = |Node { gradient: [x, y], .. }: Node| y.atan2(x);
     let pairs = nodes(&before[all.clone()]).zip(nodes(&now[all]));
-    let mut turns: Vec<f64> =
-        pairs.map(|(before, now)| unfold(angle(now) - angle(before), Some(0.0))).collect();
-    let sizes = turns.iter().map(|turn| turn.abs()).enumerate();
-    let still = sizes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node);
-    for node in still + 1..turns.len() {
+    pairs.map(move |(before, now)| unfold(angle(now) - angle(before), Some(0.0)))
+}
+
+/// Adds full turns to those of the nodes of a beam: the one of this number has turned by about so much, and each other by less than half
+/// a turn more or less than the next.
+fn follow(turns: &mut [f64], nodes: Range<usize>, from: usize, turn: f64) {
+    turns[from] = unfold(turns[from], Some(turn));
+    for node in from + 1..nodes.end {
         turns[node] = unfold(turns[node], Some(turns[node - 1]));
     }
-    for node in (0..still).rev() {
+    for node in (nodes.start..from).rev() {
         turns[node] = unfold(turns[node], Some(turns[node + 1]));
+    }
+}
+
+/// By how much the nodes of a beam have turned between two states of which nothing else is known than that some node has turned by less
+/// than half a turn.
+pub fn turns(part: &DiscretizedBeam, before: &[f64], now: &[f64]) -> Vec<f64> {
+    let mut turns: Vec<f64> = within_half_a_turn(part, before, now).collect();
+    let sizes = turns.iter().map(|turn| turn.abs()).enumerate();
+    let still = sizes.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node);
+    let (nodes, turn) = (0..turns.len(), turns.get(still).copied().unwrap_or(0.0));
+    if !nodes.is_empty() {
+        follow(&mut turns, nodes, still, turn);
     }
     turns
 }
@@ -93,7 +123,7 @@ pub fn nearest(part: &DiscretizedBeam, s: f64) -> usize {
 mod tests {
     use super::*;
     use crate::assembly::Needs;
-    use crate::model::{Beam, Discretization, Model, Section, Support};
+    use crate::model::{Beam, Discretization, Joint, Model, Place, Section, Support};
     use crate::system::System;
 
     /// Nodes that are turned by 1.5 rad more from each to the next, so that the last stands at 6 rad:
@@ -131,5 +161,38 @@ mod tests {
             let back = turns(beam, &now, &still)[nearest(beam, s)];
             assert!((back + expected).abs() < 1e-12, "{back} instead of {}", -expected);
         }
+    }
+
+    /// Two welded beams are wound up by nearly a turn from a clamp that turns by 1 rad: the node that seems to have turned least is at
+    /// the tip, where that is 0.28 rad less than a full turn. A third beam is hinged to them, and hangs on to itself.
+    #[test]
+    fn turns_are_followed_from_supports_and_across_welds() {
+        let at = |beam: usize, s: f64| Place { beam, s };
+        let beam = |x: f64| {
+            let section = Section::new(1.0, 1.0);
+            Beam::line("rod", [x, 0.0], [x + 1.0, 0.0], section, Discretization::ancf(2))
+        };
+        let mut clamp = Support::clamp(at(1, 0.0));
+        clamp.displacement.angle = 2.0;
+        let model = Model {
+            beams: vec![beam(1.0), beam(0.0), beam(2.0)],
+            supports: vec![clamp],
+            joints: vec![
+                Joint::Weld { first: at(1, 1.0), second: at(0, 0.0) },
+                Joint::Hinge { first: at(0, 1.0), second: at(2, 0.0) },
+            ],
+            ..Model::default()
+        };
+        let system = System::build(&model, Needs::default()).unwrap();
+        let mut q = system.reference().to_vec();
+        let turned = [3.5, 4.75, 6.0, 1.0, 2.25, 3.5, -0.25, 0.0, 0.5];
+        for (q, angle) in q.chunks_exact_mut(4).zip(turned) {
+            (q[3], q[2]) = f64::sin_cos(angle);
+        }
+        let found = system.node_turns((0.25, system.reference()), (0.75, &q));
+        for (found, expected) in found.iter().zip(turned) {
+            assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
+        }
+        assert_eq!((found.len(), system.parts_of_turns()), (9, 2));
     }
 }

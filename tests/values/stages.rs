@@ -1165,6 +1165,32 @@ fn full_turns_of_a_support_are_counted_however_few_states_are_kept() {
     }
 }
 
+/// A couple M at its end bends a beam to M L/(EI), by 6 rad here, in few load steps: at the clamp it has turned by as much as the clamp
+/// does, where another node has all but made a full turn, and at the end by 6 rad more. So it does where it is two beams.
+#[test]
+fn full_turns_are_counted_from_clamps_and_across_welds() {
+    let one = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1, basis.ancf.elements = 12 }\n";
+    let two = "beam.arm = { start = [0, 0], end = [0.5, 0], axial_stiffness = 1e5, bending_stiffness = 1, basis.ancf.elements = 6 }
+        beam.rest = { start = [0.5, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1, basis.ancf.elements = 6 }
+        joint = [{ type = 'weld', first = { beam = 'arm', at = 'end' }, second = { beam = 'rest', at = 'start' } }]\n";
+    for (beams, last) in [(one, "arm"), (two, "rest")] {
+        for (turn, steps) in
+            [(90.0, ""), (90.0, "steps = 1"), (-30.0, ""), (0.0, "steps = 1"), (30.0, "steps = 3")]
+        {
+            let text = format!(
+                "{beams}support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'], move.angle = '{turn} deg' }}]
+                effect.moment = [{{ beam = '{last}', at = 'end', value = 6 }}]
+                probe = [{{ name = 'clamp', beam = 'arm', at = 'start' }}, {{ name = 'tip', beam = '{last}', at = 'end' }}]
+                stage = [{{ name = 'one', analysis.static = {{ {steps} }} }}]"
+            );
+            let last = solved(&text).pop().expect("a stage");
+            let angle = |probe: usize| last.states().probes[probe].samples.last().expect("a sample").angle;
+            near(angle(0), f64::to_radians(turn), 1e-9, &text);
+            near(angle(1), f64::to_radians(turn) + 6.0, 1e-2, &text);
+        }
+    }
+}
+
 /// Vibrations about an equilibrium that is another one than that of the stage before: the probe has the angle of this one, which
 /// a static stage finds, too.
 #[test]
