@@ -71,6 +71,19 @@ pub enum RunError {
         /// The results until then.
         partial: Box<Trajectory>,
     },
+    /// A path along which loads grow and nothing moves.
+    #[error(
+        "the path leads nowhere up to load factor {load:.1e}, before {target}: the loads grow, and nothing moves"
+    )]
+    #[diagnostic(help("look whether a support holds what is to move, and whether the loads act there only"))]
+    NothingMoves {
+        /// Load factor of the last equilibrium.
+        load: f64,
+        /// Which load factor or place of a probe was to be reached.
+        target: String,
+        /// The results until then.
+        partial: Box<Trajectory>,
+    },
     /// A setting refers to a probe that does not exist.
     #[error("there is no probe `{probe}`; the probes are: {known}")]
     NoSuchProbe {
@@ -206,6 +219,7 @@ impl RunError {
             Self::NoEquilibrium { .. }
             | Self::OutOfPoints { .. }
             | Self::NothingGrows { .. }
+            | Self::NothingMoves { .. }
             | Self::NoStep { .. }
             | Self::Eigen(_)
             | Self::Memory { .. } => 1,
@@ -224,6 +238,7 @@ impl RunError {
             Self::NoEquilibrium { partial, .. }
             | Self::OutOfPoints { partial, .. }
             | Self::NothingGrows { partial, .. }
+            | Self::NothingMoves { partial, .. }
             | Self::NoStep { partial, .. } => Some(partial),
             Self::InStage { cause, .. } => cause.partial(),
             _ => None,

@@ -907,6 +907,7 @@ impl<'a> Sampler<'a> {
         match why {
             Unreached::OutOfPoints => RunError::OutOfPoints { points: arc.max_points, load, target, partial },
             Unreached::NothingGrows => RunError::NothingGrows { target, partial },
+            Unreached::NothingMoves => RunError::NothingMoves { load, target, partial },
         }
     }
 

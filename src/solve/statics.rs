@@ -41,6 +41,10 @@ const UNSEEN: f64 = 1e-6;
 const FIRST_STEP: f64 = 0.05;
 /// How often a step is shortened at most for what it may hide.
 const SHORTENED: usize = 8;
+/// Changes of positions in beam lengths, and of gradients, that are round-off …
+const STILL: f64 = 1e-13;
+/// … and after so many points with no larger ones nothing moves: load factors have grown by so much more than round-off hides.
+const STILL_POINTS: usize = 40;
 /// Inverse iterations after which the softest motion stands out.
 const INVERSE_ITERATIONS: usize = 4;
 
@@ -90,6 +94,8 @@ pub enum Unreached {
     OutOfPoints,
     /// Nothing changes any more as the load factor grows.
     NothingGrows,
+    /// What grows with the load factor moves nothing.
+    NothingMoves,
 }
 
 impl Solution {
@@ -386,6 +392,13 @@ fn along_load(
     outcome
 }
 
+/// Whether two states differ by more than the round-off of positions.
+fn moves(system: &System, before: &[f64], now: &[f64]) -> bool {
+    let units = [system.length(), system.length(), 1.0, 1.0];
+    let apart = before.iter().zip(now).take(system.coordinates()).zip(units.into_iter().cycle());
+    apart.into_iter().any(|((before, now), unit)| (before - now).abs() > STILL * unit)
+}
+
 /// Load steps from one of so many recorded states to the next, of the largest length or smaller; at least one.
 fn steps_between(system: &System, settings: &Static, recorded: usize) -> usize {
     // A length such as 1/50, as it is written, has 50 steps.
@@ -676,6 +689,7 @@ fn along_arc(
     let aims = target.arc.until_load.is_some() || target.probe.is_some();
     let conditions = target.end_conditions();
     let mut unreached = aims.then_some(Unreached::OutOfPoints);
+    let mut still = 0;
     for _ in 0..target.arc.max_points {
         path.limit_step(largest);
         let from = path.last().clone();
@@ -697,6 +711,11 @@ fn along_arc(
         let go_on = observe(point.load, path.next_step(), &path.equilibrium.statistics);
         if reached || !go_on {
             unreached = None;
+            break;
+        }
+        still = if moves(system, &from.x, &point.x) { 0 } else { still + 1 };
+        if still >= STILL_POINTS {
+            unreached = aims.then_some(Unreached::NothingMoves);
             break;
         }
         // What comes and what goes has done so at load factor 1.

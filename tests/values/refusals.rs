@@ -64,6 +64,11 @@ fn numbers_in_refusals_can_be_read() {
     );
     let nowhere = RunError::NothingGrows { target: "y = 3 m".into(), partial: records(0) };
     assert!(nowhere.to_string().starts_with("the path leads nowhere beyond load factor 1, before y = 3 m: "));
+    let still = RunError::NothingMoves { load: 3e14, target: "y = 3 m".into(), partial: records(0) };
+    assert_eq!(
+        still.to_string(),
+        "the path leads nowhere up to load factor 3.0e14, before y = 3 m: the loads grow, and nothing moves"
+    );
     let gib = 1024.0 * 1024.0 * 1024.0;
     let memory = RunError::Memory { needed: 3.0 * gib, free: 1.5 * gib };
     assert_eq!(memory.to_string(), "this needs about 3.000 GiB of memory, and 1.500 GiB are free");
@@ -77,6 +82,7 @@ fn refusals_have_their_status_and_what_is_left() {
     let version = RunError::Unavailable { what: "this", instead: "that" };
     let path = || RunError::OutOfPoints { points: 7, load: 0.25, target: String::new(), partial: records(2) };
     let nowhere = || RunError::NothingGrows { target: String::new(), partial: records(2) };
+    let still = || RunError::NothingMoves { load: 1.0, target: String::new(), partial: records(2) };
     let step = |count: usize| RunError::NoStep {
         time: 0.0,
         step: 1.0,
@@ -92,6 +98,7 @@ fn refusals_have_their_status_and_what_is_left() {
         (version, 2),
         (path(), 1),
         (nowhere(), 1),
+        (still(), 1),
         (step(2), 1),
         (stuck(0.5, 0.0, records(2)), 1),
         (memory(), 1),
@@ -299,4 +306,31 @@ fn a_probe_that_is_not_there_is_named_with_those_that_are() {
     let error = scene.model().solve(&settings).expect_err("no such probe");
     assert_eq!(error.to_string(), "there is no probe `nose`; the probes are: tip, middle");
     assert_eq!(error.exit_status(), 2);
+}
+
+/// A load at a held end, on a beam in a contact that touches nothing: its path to another place of that end ends after some dozens of
+/// points, with what was found until then.
+#[test]
+fn a_path_along_which_nothing_moves_ends() {
+    let run = |target: &str| {
+        let text = format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 2], axial_stiffness = 1e3, bending_stiffness = 1, basis.ancf.elements = 4 }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'arm', at = 'end', fix = ['x', 'y'] }}]
+            effect.force = [{{ beam = 'arm', at = 'end', value = [0.7, 2.1] }}]
+            effect.contact = [{{ beam = 'arm', half_plane = {{ point = [0, -1], normal = [0, 1] }}, stiffness = 1e4 }}]
+            probe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]
+            analysis.static.arc_length = {{ {target} }}\n"
+        );
+        let scene = parse("scene.toml", &text).expect("a scene");
+        scene.model().solve(scene.analysis())
+    };
+    let mut error = run("until_probe = { probe = 'tip', x = 0.9 }").expect_err("it is held");
+    assert!(
+        error.to_string().contains("leads nowhere") && error.to_string().contains("nothing moves"),
+        "{error}"
+    );
+    let partial = error.take_partial().expect("what was found").into_states();
+    assert!((30..60).contains(&partial.parameter.len()), "{}", partial.parameter.len());
+    // Fewer points than that can be had.
+    assert!(run("max_points = 20").is_ok());
 }
