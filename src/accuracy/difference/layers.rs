@@ -118,3 +118,77 @@ fn turns_freely(model: &Model, beam: usize, end: f64, length: f64) -> bool {
     });
     !held && !welded && !sprung
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Scales;
+    use super::super::tests::scene;
+    use super::*;
+    use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Run, Shape};
+
+    /// The clamped arm of 2 m and EI = 1 N m² with a last cell of 1 m, pulled by a force N; at its free end the moment is 0.3 N m and the
+    /// curvature 0.1 /m.
+    fn of(tension: f64, more: &str) -> Option<(Difference, Vec<Layer>)> {
+        let scene = scene(&format!("static = {{}}\n{more}"));
+        let arm = Shape {
+            s: vec![0.0, 2.0],
+            axial_force: vec![tension; 2],
+            bending_moment: vec![0.3; 2],
+            curvature: vec![0.1; 2],
+            ..Shape::default()
+        };
+        let run = Run { analysis: AnalysisKind::Static, ..Run::default() };
+        let run = Trajectory { run, last: vec![arm, Shape::default()], ..Trajectory::default() };
+        let along = BeamErrors {
+            beam: "arm".into(),
+            s: vec![0.5, 1.9, 2.0],
+            position: vec![9.0; 3],
+            curvature: vec![9.0; 3],
+        };
+        let difference = Difference {
+            errors: Errors { curvature: Some(9.0), ..Errors::default() },
+            records: vec![9.0],
+            probes: vec![ProbeErrors { name: "tip".into(), samples: vec![ProbeSample::default()] }],
+            beams: vec![along, BeamErrors::default()],
+            scales: Scales { curvature: 0.28, ..Scales::default() },
+            ..Difference::default()
+        };
+        layers(scene.model(), &[vec![0.0, 0.5, 1.0, 2.0], vec![0.0, 4.0]], &run, &difference)
+    }
+
+    /// N = 100 N makes λ = 0.1 m, of which a cell of ten times the length hides 1 − 3/10: κ = 0.7 · 0.2 /m.
+    #[test]
+    fn a_free_end_has_the_curvature_of_its_moment() {
+        let near =
+            |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        let (sum, found) = of(100.0, "").expect("a layer at the free end, and none at the clamp");
+        let [Layer { beam: 0, end: 2.0, length, curvature, position }] = found[..] else {
+            panic!("{found:?}")
+        };
+        near(length, 0.1);
+        near(curvature, 0.5);
+        near(position, 0.5 * 0.14 * 0.01 / 2.0);
+        near(sum.errors.curvature.expect("an error"), 0.5);
+        near(sum.errors.result, position);
+        near(sum.records[0], position);
+        let tip = sum.probes[0].samples[0];
+        near(tip.curvature, 0.14);
+        near(tip.angle, 0.014);
+        assert_eq!(tip.x, 0.0, "the end itself is where it is");
+        let [far, beside, end] = sum.beams[0].curvature[..] else { panic!("three places") };
+        near(beside, 0.14 / std::f64::consts::E);
+        near(end, 0.14);
+        assert!(far < 1e-6);
+        assert_eq!((sum.beams[0].position[0], sum.beams[0].position[2]), (0.0, 0.0));
+        near(sum.beams[0].position[1], position * (1.0 - (-1.0_f64).exp()) * 0.9);
+    }
+
+    #[test]
+    fn layers_are_at_ends_that_turn_freely_under_tension() {
+        assert!(of(10.0, "").is_some() && of(8.9, "").is_none(), "cells of three λ begin to see it");
+        assert!(of(-100.0, "").is_none(), "no tension");
+        assert!(of(100.0, "effect.torsion_spring = [{ beam = 'arm', at = 'end', stiffness = 1 }]").is_none());
+        assert!(of(100.0, "effect.moment = [{ beam = 'arm', at = 'end', value = 1 }]").is_some());
+        assert!(of(100.0, "effect.actuation = [{ beam = 'arm', curvature = 1 }]").is_none());
+    }
+}
