@@ -43,8 +43,9 @@ const FIRST_STEP: f64 = 0.05;
 const SHORTENED: usize = 8;
 /// Changes of positions in beam lengths, and of gradients, that are round-off …
 const STILL: f64 = 1e-13;
-/// … and after so many points with no larger ones nothing moves: load factors have grown by so much more than round-off hides.
-const STILL_POINTS: usize = 40;
+/// … and where there are no larger ones while load factors grow to so many times those that are of interest, nothing moves: that is more
+/// than round-off hides.
+const GROWN: f64 = 1e14;
 /// Inverse iterations after which the softest motion stands out.
 const INVERSE_ITERATIONS: usize = 4;
 
@@ -689,7 +690,8 @@ fn along_arc(
     let aims = target.arc.until_load.is_some() || target.probe.is_some();
     let conditions = target.end_conditions();
     let mut unreached = aims.then_some(Unreached::OutOfPoints);
-    let mut still = 0;
+    // The largest load factor at which something has moved.
+    let mut moved = loads;
     for _ in 0..target.arc.max_points {
         path.limit_step(largest);
         let from = path.last().clone();
@@ -713,8 +715,10 @@ fn along_arc(
             unreached = None;
             break;
         }
-        still = if moves(system, &from.x, &point.x) { 0 } else { still + 1 };
-        if still >= STILL_POINTS {
+        if moves(system, &from.x, &point.x) {
+            moved = point.load.abs().max(moved);
+        }
+        if point.load.abs() > GROWN * moved {
             unreached = aims.then_some(Unreached::NothingMoves);
             break;
         }

@@ -331,6 +331,13 @@ fn a_path_along_which_nothing_moves_ends() {
     );
     let partial = error.take_partial().expect("what was found").into_states();
     assert!((30..60).contains(&partial.parameter.len()), "{}", partial.parameter.len());
+    // A straight column that keeps its length does not move either, and its path to a load factor goes there.
+    let text = "beam.arm = { start = [0, 0], end = [1, 0], bending_stiffness = 1e9, basis.ancf.elements = 2 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]
+        effect.force = [{ beam = 'arm', at = 'end', value = [-1, 0] }]
+        analysis.static.arc_length = { until_load = 1e6, max_points = 10000 }\n";
+    let scene = parse("scene.toml", text).expect("a scene");
+    assert!(scene.model().solve(scene.analysis()).is_ok());
     // Fewer points than that can be had.
     assert!(run("max_points = 20").is_ok());
 }
