@@ -450,7 +450,8 @@ impl SavedState {
         let there = &self.saved.directions;
         for state in [&mut checkpoint.state].into_iter().chain(&mut checkpoint.cut) {
             let angle = |(beam, s): (usize, f64)| {
-                let known = there.iter().zip(&state.angles).filter(|((other, _), _)| *other == beam);
+                let known = there.iter().zip(&state.angles);
+                let known = known.filter(|((other, _), angle)| *other == beam && angle.is_finite());
                 let nearest =
                     known.min_by(|((_, a), _), ((_, b), _)| (a - s).abs().total_cmp(&(b - s).abs()));
                 let ((_, from), angle) = nearest?;

@@ -90,7 +90,8 @@ impl Mesh {
             let mut breaks = model.breaks(beam);
             let supports = model.supports.iter().map(|support| support.at);
             let points = supports.chain(model.parts.iter().filter_map(|part| part.point()));
-            breaks.extend(points.filter(|at| at.beam == beam).map(|at| at.s));
+            let edges = model.parts.iter().flat_map(|part| part.edges());
+            breaks.extend(points.chain(edges).filter(|at| at.beam == beam).map(|at| at.s));
             breaks.sort_by(f64::total_cmp);
             for s in breaks.into_iter().filter(|s| *s < (1.0 - SAME) * length) {
                 if fixed.last().is_some_and(|last| s - last > SAME * length) {

@@ -40,6 +40,12 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
         Vec::new()
     }
 
+    /// Places at which what the part does along a beam jumps, where it begins or ends for instance. They need not be nodes, but what
+    /// a mesh errs by depends on where in a cell they lie.
+    fn edges(&self) -> Vec<Place> {
+        Vec::new()
+    }
+
     /// The outline of an obstacle on the ground, as a line for pictures; `size` is the size of the
     /// beams \[m\].
     fn outline(&self, _size: f64) -> Vec<[f64; 2]> {
@@ -77,6 +83,11 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
     fn mass(&self) -> Option<(Place, f64)> {
         None
     }
+}
+
+/// The places of beam `beam` at which quantities along it jump.
+pub fn jumps_along<'q>(beam: usize, quantities: impl IntoIterator<Item = &'q Along>) -> Vec<Place> {
+    quantities.into_iter().flat_map(Along::jumps).map(|s| Place::new(beam, s)).collect()
 }
 
 /// Strains that an actuation imposes on a beam.

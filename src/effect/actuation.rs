@@ -10,7 +10,9 @@
 //! moment M₀ = EB_l ε₀ with that layer's parts of EA and EB.
 
 use super::{Engineering, Green, Strain, bend};
-use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Imposed, Kind, Part};
+use crate::assembly::{
+    Assembly, BuildError, Density, Extent, Gradient, Hessian, Imposed, Kind, Part, jumps_along,
+};
 use crate::basis::Quadrature;
 use crate::beam::{Along, Place, Section, StrainMeasure};
 use crate::lanes;
@@ -82,8 +84,7 @@ impl Part for Actuation {
     }
 
     fn jumps(&self) -> Vec<Place> {
-        let quantities = [&self.strain, &self.curvature].into_iter().flatten();
-        quantities.flat_map(Along::jumps).map(|s| Place::new(self.beam, s)).collect()
+        jumps_along(self.beam, self.strain.iter().chain(&self.curvature))
     }
 }
 

@@ -5,8 +5,10 @@
 //! mode of frequency ω has the damping ratio ζ = ½ (α/ω + η ω).
 
 use super::{CouplingDamping, Engineering, Green, Strain, bend};
-use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
-use crate::beam::{Along, StrainMeasure};
+use crate::assembly::{
+    Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part, jumps_along,
+};
+use crate::beam::{Along, Place, StrainMeasure};
 use crate::lanes::{Lanes, Pair, Real, dot};
 use nalgebra::{Matrix2, Vector2};
 
@@ -200,5 +202,9 @@ impl Part for BeamDamping {
             assembly.damping(Kind::Damping, extent, |_| BendDamping { coefficient })?;
         }
         Ok(())
+    }
+
+    fn edges(&self) -> Vec<Place> {
+        jumps_along(self.beam, [&self.mass_proportional, &self.strain, &self.curvature].into_iter().flatten())
     }
 }

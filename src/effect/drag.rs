@@ -1,9 +1,11 @@
 //! Resistance and lift of a fluid around a beam.
 
 use super::DeadForce;
-use crate::assembly::{Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part};
+use crate::assembly::{
+    Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part, jumps_along,
+};
 use crate::basis::Quadrature;
-use crate::beam::Along;
+use crate::beam::{Along, Place};
 use crate::lanes::{Lanes, Pair, Real, dot};
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
@@ -41,6 +43,10 @@ impl Part for Drag {
 
     fn fades(&self) -> bool {
         true
+    }
+
+    fn edges(&self) -> Vec<Place> {
+        jumps_along(self.beam, self.viscous.iter().chain(&self.quadratic))
     }
 }
 
@@ -193,5 +199,9 @@ impl Part for Buoyancy {
 
     fn fades(&self) -> bool {
         true
+    }
+
+    fn edges(&self) -> Vec<Place> {
+        jumps_along(self.beam, [&self.displaced])
     }
 }

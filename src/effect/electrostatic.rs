@@ -1,7 +1,9 @@
 //! Attraction by a flat electrode.
 
-use crate::assembly::{Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part};
-use crate::beam::Along;
+use crate::assembly::{
+    Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, jumps_along,
+};
+use crate::beam::{Along, Place};
 use crate::law::Law;
 use nalgebra::Vector2;
 
@@ -67,6 +69,10 @@ impl Part for Electrostatic {
 
     fn fades(&self) -> bool {
         true
+    }
+
+    fn edges(&self) -> Vec<Place> {
+        jumps_along(self.beam, [&self.facing])
     }
 }
 

@@ -7,7 +7,7 @@
 
 use crate::assembly::{
     Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, Resistance,
-    TimedDensity,
+    TimedDensity, jumps_along,
 };
 use crate::beam::{Along, Place};
 use crate::law::Law;
@@ -133,6 +133,10 @@ impl Part for ForceField {
         let start = Place { beam: self.beam, s: 0.0 };
         let axes = [[1.0, 0.0], [0.0, 1.0]].map(|axis| Resistance::Displacement(start, axis));
         axes.into_iter().chain([Resistance::Direction(start)]).collect()
+    }
+
+    fn edges(&self) -> Vec<Place> {
+        jumps_along(self.beam, [&self.acting])
     }
 }
 

@@ -1,7 +1,7 @@
 //! Elastic foundation along a beam.
 
 use super::spring::GroundSpring;
-use crate::assembly::{Assembly, BuildError, Extent, Kind, Part, Resistance};
+use crate::assembly::{Assembly, BuildError, Extent, Kind, Part, Resistance, jumps_along};
 use crate::beam::{Along, Place};
 use nalgebra::Vector2;
 
@@ -36,5 +36,9 @@ impl Part for Foundation {
         let axes = [[1.0, 0.0], [0.0, 1.0]].into_iter().zip(&self.stiffness);
         let held = axes.filter(|(_, k)| !k.is_zero()).map(|(axis, _)| Resistance::Displacement(start, axis));
         held.chain([Resistance::Direction(start)]).collect()
+    }
+
+    fn edges(&self) -> Vec<Place> {
+        jumps_along(self.beam, &self.stiffness)
     }
 }

@@ -14,7 +14,9 @@
 
 use super::Inertia;
 use super::direction;
-use crate::assembly::{Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part};
+use crate::assembly::{
+    Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part, jumps_along,
+};
 use crate::beam::{Along, Place};
 use crate::lanes::{Lanes, Pair, Real, cross, dot};
 
@@ -71,6 +73,10 @@ impl Part for SectionInertia {
         let (inertia, extent) = Extent::along(self.beam, rule, &self.per_length);
         let momentum = RotaryInertia { inertia };
         assembly.turning_inertia(Kind::RotaryInertia, extent, momentum.clone(), Gyration(momentum))
+    }
+
+    fn edges(&self) -> Vec<Place> {
+        jumps_along(self.beam, [&self.per_length])
     }
 }
 

@@ -79,7 +79,7 @@ pub enum RunError {
     NothingMoves {
         /// Load factor of the last equilibrium.
         load: f64,
-        /// Which load factor or place of a probe was to be reached.
+        /// Which load factor, place of a probe or number of points was to be reached.
         target: String,
         /// The results until then.
         partial: Box<Trajectory>,

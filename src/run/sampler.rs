@@ -145,8 +145,13 @@ fn stations(even: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<Side>) {
 /// From where the turns of directions are counted.
 #[derive(Clone, Copy)]
 pub(super) enum History<'h> {
-    /// Since this load factor and state, those of the record before, with the turns of all nodes since then where they are known.
-    Before((f64, &'h [f64]), &'h [f64]),
+    /// Since the record before.
+    Before {
+        load: f64,
+        q: &'h [f64],
+        /// By how much all nodes have turned since then \[rad\]; empty where that is to be found.
+        turned: &'h [f64],
+    },
     /// Directions at all probes, with full turns included already.
     Angles(&'h [f64]),
 }
@@ -622,7 +627,7 @@ impl<'a> Sampler<'a> {
             let start = is_slack.then(|| self.system.start());
             let known = match history {
                 History::Angles(angles) => angles.get(probe).copied().filter(|angle| angle.is_finite()),
-                History::Before(..) => None,
+                History::Before { .. } => None,
             };
             let angle = known.unwrap_or_else(|| {
                 let (now, part) = (fields.angle(), &self.system.beams()[*beam]);
@@ -632,10 +637,12 @@ impl<'a> Sampler<'a> {
                         let turns = of_strings[*beam].get_or_insert_with(|| turning::turns(part, start, q));
                         unfold(now, Some(view.fields(start).angle() + turns[node]))
                     }
-                    (None, History::Before(before, turned)) => {
+                    (None, History::Before { load: before, q: shape, turned }) => {
                         let node = part.first_node + node;
-                        let found =
-                            || turns.get_or_insert_with(|| self.system.node_turns(before, (load, q)))[node];
+                        let found = || {
+                            turns.get_or_insert_with(|| self.system.node_turns((before, shape), (load, q)))
+                                [node]
+                        };
                         let turn = turned.get(node).copied().unwrap_or_else(found);
                         unfold(now, series.samples.last().map(|sample| sample.angle + turn))
                     }
@@ -679,7 +686,7 @@ impl<'a> Sampler<'a> {
             Some(before) => {
                 let turned = solution.turned.get(number).map_or(&[][..], |turned| turned);
                 let (load, x) = &solution.states[before];
-                History::Before((*load, self.coordinates_of(x)), turned)
+                History::Before { load: *load, q: self.coordinates_of(x), turned }
             }
         }
     }
@@ -902,6 +909,7 @@ impl<'a> Sampler<'a> {
             format!("{} = {value} m of probe `{probe}`", if *axis == 0 { "x" } else { "y" })
         });
         let target = load.into_iter().chain(probe).collect::<Vec<_>>().join(" or ");
+        let target = if target.is_empty() { format!("its {} points", arc.max_points) } else { target };
         let load = solution.states.last().map_or(0.0, |(load, _)| *load);
         let partial = Box::new(incomplete(self.statics(solution)));
         match why {

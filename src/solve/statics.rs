@@ -11,6 +11,7 @@ use crate::model::{ArcLength, Static};
 use crate::numeric::GOLDEN;
 use crate::solve::{Statistics, StepRecord, Work};
 use crate::system::{System, View};
+use std::f64::consts::FRAC_PI_2;
 
 /// Largest last increment, in beam lengths, with which stability and the path's tangent are judged.
 /// The tangent of Newton's last iterate carries the stress of a state that has not converged yet,
@@ -21,8 +22,10 @@ const LAST_INCREMENT: f64 = 1e-6;
 /// lengths, gradients as they are.
 const PUSH: f64 = 1e-3;
 
-/// Largest turn of a support in a step of a structure that is relaxed \[rad\].
+/// Largest turn of a support in a step of a structure that is relaxed, so that it follows to the side of the turn \[rad\] …
 const LARGEST_TURN: f64 = 0.5;
+/// … and along a path by loads, so that what it carries turns by less than half a turn.
+const LARGEST_TURN_OF_PATH: f64 = FRAC_PI_2;
 
 /// Two equilibria that differ by less are the same: positions in beam lengths, gradients as they
 /// are.
@@ -351,8 +354,7 @@ fn along_load(
     let mut turned = Turned::new(settings);
     solution.record(path.equilibrium, 0.0, &path.last().x, work, &mut turned);
     let recorded = settings.steps.unwrap_or(1).max(1);
-    let of_turns = path.equilibrium.system().parts_of_turns().div_ceil(recorded);
-    let between = of_turns.max(steps_between(path.equilibrium.system(), settings, recorded));
+    let between = steps_between(path.equilibrium.system(), settings, recorded, LARGEST_TURN_OF_PATH);
     let parts = recorded.saturating_mul(between);
     let mut part = 1;
     let outcome = loop {
@@ -400,11 +402,12 @@ fn moves(system: &System, before: &[f64], now: &[f64]) -> bool {
     apart.into_iter().any(|((before, now), unit)| (before - now).abs() > STILL * unit)
 }
 
-/// Load steps from one of so many recorded states to the next, of the largest length or smaller; at least one.
-fn steps_between(system: &System, settings: &Static, recorded: usize) -> usize {
+/// Load steps from one of so many recorded states to the next, of the largest length or smaller, and in none of which a support turns by
+/// more than `turn`; at least one.
+fn steps_between(system: &System, settings: &Static, recorded: usize, turn: f64) -> usize {
     // A length such as 1/50, as it is written, has 50 steps.
     let steps = (1.0 / settings.largest_step(system.has_friction()) - AT_TARGET).ceil() as usize;
-    steps.div_ceil(recorded).max(1)
+    steps.max(system.parts_of_turns(turn)).div_ceil(recorded).max(1)
 }
 
 /// The equilibria at the parts of the load, each relaxed from the one before.
@@ -419,10 +422,8 @@ fn relaxed(
     let mut work = Work::default();
     let mut turned = Turned::new(settings);
     solution.record(equilibrium, 0.0, &x, work, &mut turned);
-    // A support that turns far at once may as well turn the other way: steps that are not recorded lie between.
-    let of_turns = (equilibrium.system().largest_turn() / LARGEST_TURN).ceil() as usize;
     let recorded = settings.steps.unwrap_or(1).max(1);
-    let between = of_turns.div_ceil(recorded).max(steps_between(equilibrium.system(), settings, recorded));
+    let between = steps_between(equilibrium.system(), settings, recorded, LARGEST_TURN);
     let parts = recorded.saturating_mul(between);
     let mut before = Stability::Directions(0);
     for part in 1..=parts {
@@ -719,7 +720,7 @@ fn along_arc(
             moved = point.load.abs().max(moved);
         }
         if point.load.abs() > GROWN * moved {
-            unreached = aims.then_some(Unreached::NothingMoves);
+            unreached = Some(Unreached::NothingMoves);
             break;
         }
         // What comes and what goes has done so at load factor 1.

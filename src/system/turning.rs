@@ -3,16 +3,12 @@
 use super::constraints::Constraint;
 use super::{System, View, unfold};
 use crate::assembly::{DiscretizedBeam, Node, nodes};
-use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
-/// Turn of a support up to which one load step is believed to have turned what it carries by less than half a turn \[rad\].
-const FAR: f64 = FRAC_PI_2;
-
 impl System {
-    /// The parts of the load in each of which no support turns far.
-    pub fn parts_of_turns(&self) -> usize {
-        ((self.largest_turn() / FAR).ceil() as usize).max(1)
+    /// The parts of the load in each of which no support turns by more than `turn` \[rad\].
+    pub fn parts_of_turns(&self, turn: f64) -> usize {
+        ((self.largest_turn() / turn).ceil() as usize).max(1)
     }
 
     /// By how much all nodes have turned between two states, each with its load factor \[rad\]. One load step may wind a beam up by
@@ -125,6 +121,7 @@ mod tests {
     use crate::assembly::Needs;
     use crate::model::{Beam, Discretization, Joint, Model, Place, Section, Support};
     use crate::system::System;
+    use std::f64::consts::FRAC_PI_2;
 
     /// Nodes that are turned by 1.5 rad more from each to the next, so that the last stands at 6 rad:
     /// about the first, which is still, and about the last, which is.
@@ -193,6 +190,6 @@ mod tests {
         for (found, expected) in found.iter().zip(turned) {
             assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
         }
-        assert_eq!((found.len(), system.parts_of_turns()), (9, 2));
+        assert_eq!((found.len(), system.parts_of_turns(FRAC_PI_2)), (9, 2));
     }
 }

@@ -1,6 +1,6 @@
 //! What is chosen, what is kept, and what the files say of it.
 
-use super::{cantilever, error, last, run, scene};
+use super::{cantilever, error, estimate, last, run, scene};
 use ancf::model::{Analysis, Discretization, Integrator, Nodes, StepControl};
 use ancf::scene::parse;
 use std::f64::consts::TAU;
@@ -118,8 +118,7 @@ fn estimates_for_a_scene_as_it_is_take_its_own_mesh() {
     let text = text.replace("mass_per_length", "basis.ancf.elements = 12, mass_per_length");
     let scene = scene(&text);
     let plain = scene.model().solve(scene.analysis()).expect("an equilibrium");
-    let known =
-        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+    let known = estimate(&scene);
     assert_eq!(plain.states().probes[0].samples, known.states().probes[0].samples);
     let fine = run(&super::scene(&cantilever(
         1e4,
@@ -150,8 +149,7 @@ fn a_force_within_a_cell_errs_by_its_place_there() {
             &format!("name = 'there', beam = 'arm', at = {s:?}"),
         );
         let scene = scene(&text.replace("mass_per_length", "basis.ancf.elements = 12, mass_per_length"));
-        let known =
-            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let known = estimate(&scene);
         let part = (cells * s).fract();
         let truth = load * (part * (1.0 - part) / cells).powi(3) / 3.0;
         let estimated = error(&known).estimated.result;
@@ -170,8 +168,7 @@ fn a_force_within_a_meshfree_cell_errs_by_its_place_there() {
             cantilever(1e4, 1.0, &load).replace("mass_per_length", &format!("basis.{basis}, mass_per_length"))
         };
         let named = scene(&text(&format!("rpim.nodes = {nodes}")));
-        let known =
-            ancf::accuracy::estimate(named.model(), named.analysis(), ancf::Options::default()).expect("one");
+        let known = estimate(&named);
         let fine = run(&scene(&text("ancf.elements = 200")));
         let truth = (last(&known).x - last(&fine).x).hypot(last(&known).y - last(&fine).y);
         let told = error(&known).probes[0].samples.last().expect("a state").x;
@@ -190,8 +187,7 @@ fn a_strain_that_jumps_moves_its_place() {
          effect.actuation = [{ beam = 'arm', strain = 2.7e-4, from = 0.27 }]\n\
          probe = [{ name = 'there', beam = 'arm', at = 0.27 }]\nanalysis.static = {}\n",
     );
-    let known =
-        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+    let known = estimate(&scene);
     let truth = 2.7e-4 * 0.51_f64.hypot(0.86) / 22.0 / 12.0;
     let told = error(&known).probes[0].samples.last().expect("a state").x;
     assert!((0.5..3.0).contains(&(told / truth)), "{told:e} {truth:e}");
@@ -225,7 +221,7 @@ fn a_stiffness_that_jumps_errs_by_the_length_of_elements() {
                  support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
                  probe = [{{ name = 'end', beam = 'b', at = 'end' }}]\n{rest}"
             ));
-            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one")
+            estimate(&scene)
         };
         let vibrations = of("analysis.modal.count = 2\n");
         let found = TAU * vibrations.eigenvalues()[0];
@@ -307,8 +303,7 @@ fn the_strain_errs_beside_where_it_jumps() {
                 more[0], more[1]
             );
             let scene = scene(&text);
-            let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
-                .expect("one");
+            let results = estimate(&scene);
             let states = results.states();
             for (number, exact) in [before, behind].into_iter().enumerate() {
                 let found = states.probes[number].samples.last().expect("a state").strain;
@@ -334,8 +329,7 @@ fn the_curvature_of_meshfree_beams_errs_at_their_ends() {
              effect.distributed_force = [{{ beam = 'b', value = [0, -2e-3] }}]\n\
              probe = [{{ name = 'p', beam = 'b', at = 'start' }}]\nanalysis.static = {{}}\n"
         ));
-        let results =
-            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let results = estimate(&scene);
         let truth = (last(&results).curvature + 1e-3).abs();
         let told = error(&results).probes[0].samples.last().expect("a state").curvature;
         assert!(truth <= 3.0 * told && told <= 5.0 * truth, "{nodes}: {truth:e}, {told:e} told");

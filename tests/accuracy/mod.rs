@@ -28,6 +28,12 @@ fn run(scene: &Scene) -> Results {
     accuracy::run(scene, Options::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// As the scene is written, with its error.
+fn estimate(scene: &Scene) -> Results {
+    accuracy::estimate(scene.model(), scene.analysis(), Options::default())
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
 fn error(results: &Results) -> &ErrorEstimate {
     results.run().error.as_ref().expect("an estimate")
 }

@@ -1,6 +1,6 @@
 //! Accuracies that cannot be had end with what was reached, and why.
 
-use super::{cantilever, error, run, scene};
+use super::{cantilever, error, estimate, run, scene};
 use ancf::results::AnalysisKind;
 use ancf::run::{Control, Progress};
 use ancf::{Options, accuracy};
@@ -82,7 +82,7 @@ fn steps_that_do_not_follow_the_tolerance_are_not_judged() {
     let text =
         cantilever(1e2, 1.0, rest).replace("mass_per_length", "basis.ancf.elements = 4, mass_per_length");
     let scene = scene(&text);
-    let results = accuracy::estimate(scene.model(), scene.analysis(), Options::default()).expect("a motion");
+    let results = estimate(&scene);
     assert!(error(&results).estimated.result.is_infinite());
     assert!(error(&results).reason.as_ref().is_some_and(|reason| reason.contains("hardly fewer steps")));
 }

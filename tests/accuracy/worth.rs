@@ -1,6 +1,6 @@
 //! The estimate against closed forms: the accuracy is met, and the true error is near the estimate.
 
-use super::{cantilever, error, last, run, scene};
+use super::{cantilever, error, estimate, last, run, scene};
 use std::f64::consts::{PI, TAU};
 
 /// The true error is no larger than wanted, and not far from the estimate: at most three times as
@@ -241,8 +241,7 @@ fn strains_of_modes_jump_where_something_acts_within_a_span() {
         let arm = cantilever(1.0, 400.0, "effect.point_mass = [{ beam = 'arm', at = 0.5, mass = 1 }]");
         let arm = arm.replace("mass_per_length", &format!("basis.{basis}, mass_per_length"));
         let scene = scene(&format!("{arm}analysis.modal.count = 3"));
-        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
-            .expect("results");
+        let results = estimate(&scene);
         let told = &error(&results).eigenvalues;
         for ((f, exact), told) in results.eigenvalues().iter().zip(exact).zip(told.iter().copied()) {
             let truth = (f / exact - 1.0).abs();
@@ -300,8 +299,7 @@ fn the_strain_jumps_where_the_gradient_is_fixed() {
         let bar =
             bar.replace("mass_per_length", &format!("basis.ancf.elements = {elements}, mass_per_length"));
         let scene = scene(&format!("{bar}analysis.modal.count = 3"));
-        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
-            .expect("results");
+        let results = estimate(&scene);
         check(&format!("{elements} elements"), &results);
     }
 }
@@ -321,8 +319,7 @@ fn waves_that_are_short_against_cells_are_seen() {
             );
             let text = if analysis == "modal" { text.replace("effect.force", "#") } else { text };
             let scene = scene(&text);
-            let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
-                .expect("results");
+            let results = estimate(&scene);
             let told = &error(&results).eigenvalues;
             for ((k, found), told) in (1..=8).zip(results.eigenvalues()).zip(told.iter().copied()) {
                 let truth = (found * unit / (f64::from(k) * PI).powi(2) - 1.0).abs();
@@ -345,8 +342,7 @@ fn the_strain_jumps_at_a_support_within_a_span() {
         let arm =
             arm.replace("mass_per_length", &format!("basis.ancf.elements = {elements}, mass_per_length"));
         let scene = scene(&format!("{arm}analysis.static = {{}}"));
-        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
-            .expect("results");
+        let results = estimate(&scene);
         let (truth, told) = ((last(&results).x - 1.07).abs(), error(&results).estimated.result);
         assert!(truth <= 1.5 * told && told <= 5.0 * truth, "{elements}: {truth:.1e}, told {told:.1e}");
     }
@@ -403,7 +399,7 @@ fn errors_that_finer_meshes_do_not_remove_are_seen() {
         let rest = "effect.gravity.acceleration = [0.04, 5]\nanalysis.static = {}";
         let text = cantilever(1e4, 1.0, rest).replace("mass_per", &format!("basis = {basis}, mass_per"));
         let scene = scene(&text);
-        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("results")
+        estimate(&scene)
     };
     let exact = last(&of("{ ancf = { elements = 200 } }"));
     for kernel in [
@@ -432,7 +428,7 @@ fn errors_beside_a_short_meshfree_cell_are_seen() {
         let rest = "effect.gravity.acceleration = [0.04, 5]\neffect.moment = [{ beam = 'arm', at = 0.25, value = 0.1 }]\nanalysis.static = {}";
         let text = cantilever(60.0, 1.0, rest).replace("mass_per", &format!("basis = {basis}, mass_per"));
         let scene = scene(&text.replace("at = 'end' }", "at = 0.19 }"));
-        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("results")
+        estimate(&scene)
     };
     let exact = last(&of("{ ancf = { elements = 200 } }"));
     let nodes = "0, 0.0345, 0.0916, 0.136, 0.175, 0.24, 0.284, 0.316, 0.368, 0.397, 0.429, 0.481, 0.513, 0.548, 0.605, 0.67, 0.734, 0.772, \
@@ -452,8 +448,7 @@ fn the_strain_at_an_end_of_a_meshfree_bar_errs_by_as_much_as_beside_it() {
         let pull = "effect.force = [{ beam = 'arm', at = 'end', value = [50, 0] }]\nanalysis.static = {}";
         let basis = format!("basis.rpim.nodes = {nodes}, mass_per");
         let scene = scene(&cantilever(1e4, 1.0, pull).replace("mass_per", &basis));
-        let known =
-            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let known = estimate(&scene);
         let truth = (last(&known).strain - 50.0 / 1e4).abs();
         let told = error(&known).probes[0].samples.last().expect("a state").strain;
         assert!(truth <= 3.0 * told, "{nodes}: {truth:e} for {told:e}");
@@ -469,8 +464,7 @@ fn the_strain_at_the_clamp_of_a_meshfree_beam_errs_by_as_much_as_beside_it() {
         let text = cantilever(50.0, 1.0, pull).replace("mass_per", &basis);
         let scene =
             scene(&text.replace("'tip', beam = 'arm', at = 'end'", "'clamp', beam = 'arm', at = 'start'"));
-        let known =
-            ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+        let known = estimate(&scene);
         let truth = (last(&known).strain - 0.08).abs();
         let told = error(&known).probes[0].samples.last().expect("a state").strain;
         assert!(truth > 1e-5 && truth <= 3.0 * told, "{nodes}: {truth:e} for {told:e}");
@@ -485,12 +479,31 @@ fn errors_where_a_couple_moves_a_node_are_seen() {
                 effect.force = [{ beam = 'arm', at = 'end', value = [-0.0831, -0.569] }]\nanalysis.static = {}";
     let text = cantilever(1e3, 1.0, rest).replace("mass_per", "basis.ancf.elements = 3, mass_per");
     let scene = scene(&text);
-    let known =
-        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("one");
+    let known = estimate(&scene);
     let found = last(&known);
     let truth = (found.x - 0.310_244_9).hypot(found.y - 0.835_212_1);
     let worth = truth / error(&known).estimated.result;
     assert!(truth > 0.02 && (0.1..=3.0).contains(&worth), "{truth}: {worth}");
+}
+
+/// A bar between walls whose load begins at a, within a cell: EA u″ = −q from there on, and so u = q/(2 EA) ((1 − a)² s − ⟨s − a⟩²). In
+/// cells of twice the length a lies elsewhere, and their errors tell nothing.
+#[test]
+fn errors_of_loads_that_begin_within_cells_are_seen() {
+    let (stiffness, load) = (1e3, 10.0);
+    for (elements, begins) in [(5, 0.28), (7, 0.28), (15, 0.28), (15, 0.37), (16, 0.37)] {
+        let text = format!(
+            "beam.bar = {{ start = [0, 0], end = [1, 0], axial_stiffness = {stiffness:?}, bending_stiffness = 1, basis.ancf.elements = {elements} }}\n\
+             support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'bar', at = 'end', fix = ['x', 'y'] }}]\n\
+             effect.distributed_force = [{{ beam = 'bar', value = [{load:?}, 0], from = {begins:?} }}]\n\
+             probe = [{{ name = 'p', beam = 'bar', at = {begins:?} }}]\nanalysis.static = {{}}"
+        );
+        let results = estimate(&scene(&text));
+        let exact = load / (2.0 * stiffness) * (1.0 - begins) * (1.0 - begins) * begins;
+        let truth = (last(&results).x - begins - exact).abs();
+        let told = error(&results).estimated.result;
+        assert!(truth <= 2.0 * told && told <= 10.0 * truth, "{elements} {begins}: {truth:e}, told {told:e}");
+    }
 }
 
 /// One element cannot be made coarser, and the halves of an odd number are not its halves. Many elements are the judge.
@@ -500,7 +513,7 @@ fn errors_of_a_few_named_elements_are_seen() {
         let rest = "effect.gravity.acceleration = [0.04, 5]\nanalysis.static = {}";
         let basis = format!("basis.ancf.elements = {elements}, mass_per");
         let scene = scene(&cantilever(1e4, 1.0, rest).replace("mass_per", &basis));
-        ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default()).expect("results")
+        estimate(&scene)
     };
     let exact = last(&of(200));
     for elements in [1, 2, 3, 5, 7] {
@@ -746,8 +759,7 @@ fn corners_of_laws_near_a_node_of_all_meshes_are_seen() {
         "rpim.nodes = 30",
     ] {
         let scene = scene(&text(&format!("basis.{basis},"), ""));
-        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
-            .expect("results");
+        let results = estimate(&scene);
         let (truth, estimated) = (truth(&results), error(&results).estimated.result);
         assert!(truth <= 3.0 * estimated && estimated < 1e-3, "{basis}: {truth:e} for {estimated:e}");
     }
@@ -789,8 +801,7 @@ fn corners_of_laws_on_the_way_are_seen() {
         "rpim.nodes = 40",
     ] {
         let scene = scene(&text(&format!("basis.{basis},"), ""));
-        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
-            .expect("results");
+        let results = estimate(&scene);
         let (truth, told) = judged(&results);
         assert!(truth <= 3.0 * told, "{basis}: {truth:e} for {told:e}");
         assert!(results.states().states.is_none(), "states that nobody asked for");
@@ -825,8 +836,7 @@ fn impacts_within_steps_of_a_given_length_are_seen() {
             probe = [{{ name = 'end', beam = 'rod', at = 'start' }}]
             analysis.dynamic = {{ duration = 1, output_every = 0.01, {integrator} }}\n"
         ));
-        let results = ancf::accuracy::estimate(scene.model(), scene.analysis(), ancf::Options::default())
-            .expect("results");
+        let results = estimate(&scene);
         let states = results.states();
         let errors =
             states.parameter.iter().zip(&states.probes[0].samples).map(|(t, at)| (at.y - exact(*t)).abs());

@@ -331,6 +331,9 @@ fn a_path_along_which_nothing_moves_ends() {
     );
     let partial = error.take_partial().expect("what was found").into_states();
     assert!((30..60).contains(&partial.parameter.len()), "{}", partial.parameter.len());
+    // Nor is it less than what was asked for where that is a number of points.
+    let error = run("max_points = 200").expect_err("it is held").to_string();
+    assert!(error.contains("before its 200 points: the loads grow, and nothing moves"), "{error}");
     // A straight column that keeps its length does not move either, and its path to a load factor goes there.
     let text = "beam.arm = { start = [0, 0], end = [1, 0], bending_stiffness = 1e9, basis.ancf.elements = 2 }
         support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]

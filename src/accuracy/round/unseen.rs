@@ -309,7 +309,7 @@ impl Runner<'_, '_> {
     }
 }
 
-/// Whether something acts in a point within a cell that the scene gives a beam. `named` has nodes there, and those that the scene
+/// Whether something acts in a point, begins or ends within a cell that the scene gives a beam. `named` has nodes there, and those that the scene
 /// names.
 pub(super) fn has_points(model: &Model, beam: usize, named: &Mesh) -> bool {
     let Ok(length) = Curve::new(&model.beams[beam].centreline).map(|curve| curve.length()) else {
