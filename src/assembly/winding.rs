@@ -56,7 +56,12 @@ impl Winding {
         TAU * (angle / TAU).round()
     }
 
-    /// W \[J\] for the angle θ = `angle`.
+    /// 2πn for the angle θ = `angle` in the state `q`: after just half a turn n is the one that belongs to α, which may be π or −π.
+    fn beyond_in(&self, angle: f64, q: &[f64]) -> f64 {
+        Self::beyond(angle - self.direction.energy(q))
+    }
+
+    /// W \[J\] for the angle θ = `angle`. After just half a turn either n gives the same.
     pub fn energy(&self, angle: f64) -> f64 {
         let beyond = Self::beyond(angle);
         self.stiffness * beyond * (angle - 0.5 * beyond)
@@ -69,7 +74,7 @@ impl Winding {
 
     /// As [`Self::add_force`], for a known angle θ = `angle`.
     pub fn add_force_at(&self, angle: f64, q: &[f64], f: &mut [f64]) {
-        let beyond = Self::beyond(angle);
+        let beyond = self.beyond_in(angle, q);
         if beyond != 0.0 {
             self.direction.add_force(self.stiffness * beyond, q, f);
         }
@@ -84,7 +89,7 @@ impl Winding {
         k: &mut Matrix,
         workspace: &mut Workspace,
     ) {
-        let beyond = Self::beyond(self.angle(accepted, q));
+        let beyond = self.beyond_in(self.angle(accepted, q), q);
         if beyond != 0.0 {
             self.direction.add_force_and_tangent(self.stiffness * beyond, q, None, f, k, workspace);
         }
@@ -92,7 +97,7 @@ impl Winding {
 
     /// `k += ` ∂²W/∂q∂q for a known angle θ = `angle`.
     pub fn add_tangent_at(&self, angle: f64, q: &[f64], k: &mut Matrix) {
-        let beyond = Self::beyond(angle);
+        let beyond = self.beyond_in(angle, q);
         if beyond != 0.0 {
             let (mut idle, mut workspace) = (vec![0.0; q.len()], Workspace::default());
             let factor = self.stiffness * beyond;
@@ -102,13 +107,13 @@ impl Winding {
 
     /// `f += ` ∂²W/∂q∂q `v` for a known angle θ = `angle`.
     pub fn add_tangent_product_at(&self, angle: f64, q: &[f64], v: &[f64], f: &mut [f64]) {
-        self.direction.add_tangent_product(self.stiffness * Self::beyond(angle), q, v, f);
+        self.direction.add_tangent_product(self.stiffness * self.beyond_in(angle, q), q, v, f);
     }
 
     /// Adds to `sum` the actions on its beam, with the angle θ known from `variables`.
     pub fn add_actions(&self, variables: &InternalVariables, q: &[f64], sum: &mut Actions) {
         let angle = variables.angles.get(self.number).copied().unwrap_or(0.0);
-        self.direction.add_actions(self.stiffness * Self::beyond(angle), q, q, sum);
+        self.direction.add_actions(self.stiffness * self.beyond_in(angle, q), q, q, sum);
     }
 
     /// The angle by which the spring has turned since the last accepted state \[rad\].

@@ -4,7 +4,7 @@
 use ancf::assembly::{AcceptedState, InternalVariables, Needs};
 use ancf::results::Trajectory;
 use ancf::system::System;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 fn solved(text: &str) -> Trajectory {
     let scene = ancf::scene::parse("winding.toml", text).expect("a legal scene");
@@ -119,5 +119,34 @@ fn the_turn_of_a_step_is_that_of_the_spring_that_turns_most() {
         let held = AcceptedState { q: system.reference().to_vec(), variables };
         let found = system.winding_turn(&held, &q);
         assert!((found - turn).abs() < 1e-12, "from {before:?} to {start}, {end}: {found}, not {turn}");
+    }
+}
+
+/// A support that turns the end of a clamped beam by θ = nπ against a spring there holds it by (EI/L + k) θ. Just half a turn is both π
+/// and −π, and the full turns beyond it follow from which of them it is taken for.
+#[test]
+fn a_spring_that_is_turned_by_half_turns_has_all_its_moment() {
+    let (ei, k) = (1.0, 0.5);
+    for (half_turns, basis, analysis) in [
+        (1, "ancf.elements = 20", "static = {}"),
+        (-1, "ancf.elements = 20", "static = {}"),
+        (1, "rpim.nodes = 15", "static.steps = 4"),
+        (2, "ancf.elements = 20", "static = {}"),
+        (3, "ancf.elements = 20", "static.arc_length.until_load = 1"),
+        (-3, "ancf.elements = 20", "static.steps = 3"),
+        (5, "ancf.elements = 40", "static = {}"),
+        (7, "ancf.elements = 40", "static.arc_length.until_load = 1"),
+    ] {
+        let trajectory = solved(&format!(
+            "beam.coil = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = {ei}, basis.{basis} }}\n\
+             analysis.{analysis}\noutput.reactions = true\n\
+             support = [{{ beam = 'coil', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'coil', at = 'end', fix = ['angle'], \
+             move = {{ angle = '{} deg' }} }}]\n\
+             effect.torsion_spring = [{{ beam = 'coil', at = 'end', stiffness = {k} }}]",
+            180 * half_turns
+        ));
+        let found = trajectory.reactions[1].samples.last().expect("an equilibrium").moment;
+        let exact = (ei + k) * f64::from(half_turns) * PI;
+        assert!((found - exact).abs() < 1e-3 * exact.abs(), "{half_turns}, {analysis}: {found} for {exact}");
     }
 }
