@@ -285,3 +285,34 @@ fn a_path_goes_straight_through_the_bifurcation_of_a_column() {
         }
     }
 }
+
+/// A truss of two slender pinned bars loses stability of both bars at once, of one mode after the other, and snaps through. Its path and
+/// its critical loads are the same whatever load the scene names as one.
+#[test]
+fn a_path_through_bifurcations_does_not_depend_on_the_nominal_load() {
+    let of = |load: f64| -> Vec<f64> {
+        let text = format!(
+            "beam.l = {{ start = [-1, 0], end = [0, 0.5], axial_stiffness = 1e3, bending_stiffness = 0.5, basis.rpim.nodes = 9 }}
+            beam.r = {{ start = [0, 0.5], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 0.5, basis.rpim.nodes = 9 }}
+            joint = [{{ type = 'hinge', first = {{ beam = 'l', at = 'end' }}, second = {{ beam = 'r', at = 'start' }} }}]
+            support = [{{ beam = 'l', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'r', at = 'end', fix = ['x', 'y'] }}]
+            effect.force = [{{ beam = 'l', at = 'end', value = [0, {}] }}]
+            probe = [{{ name = 'c', beam = 'l', at = 'end' }}]
+            analysis.static.arc_length = {{ max_points = 400, until_probe = {{ probe = 'c', y = -0.6 }} }}\n",
+            -load
+        );
+        let scene = ancf::scene::parse("scene.toml", &text).expect("a scene");
+        let results = scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{load}: {error}"));
+        let states = results.states();
+        assert!((states.probes[0].samples.last().expect("a state").y + 0.6).abs() < 1e-9, "{load}");
+        states.events.iter().map(|event| event.parameter() * load).collect()
+    };
+    let whole = of(1.0);
+    // Twice π² EI/L² sin α at first, for both bars.
+    assert!((whole[0] - 3.488).abs() < 1e-3 && whole.len() == 10, "{whole:?}");
+    for load in [1e-2, 1e-3, 1e-5] {
+        for (found, expected) in of(load).into_iter().zip(&whole) {
+            assert!((found - expected).abs() < 1e-5 * expected.abs(), "{load}: {found} for {expected}");
+        }
+    }
+}

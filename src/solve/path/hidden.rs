@@ -17,8 +17,11 @@ const HALVINGS: u32 = 20;
 const STANDS_STILL: f64 = 0.2;
 /// Part of a step by which the cubic between its ends may miss the path halfway.
 const MISSED: f64 = 0.03;
-/// Changes of the shape below this part of a step are round-off.
+/// Changes of the shape below this part of a step are round-off …
 const UNMOVED: f64 = 1e-7;
+/// … and so are those below this turn \[rad\], or part of a beam length, which beside a bifurcation round-off makes in the direction that
+/// is about to lose its stiffness.
+const STIRRED: f64 = 1e-8;
 
 impl Path<'_, '_> {
     /// Whether a path by arc length meets more on the way to a point than one limit point, where one direction loses or regains
@@ -127,7 +130,8 @@ impl Path<'_, '_> {
         let off_load = std::mem::take(&mut off[n]);
         step[n] = 0.0;
         let size = |v: &[f64]| self.dot(v, v).sqrt();
-        size(&off) > (MISSED * size(&step)).max(UNMOVED * length) || off_load.abs() > MISSED * of_load
+        size(&off) > (MISSED * size(&step)).max(UNMOVED * length).max(STIRRED)
+            || off_load.abs() > MISSED * of_load
     }
 }
 
