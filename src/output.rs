@@ -22,6 +22,7 @@
 
 mod digits;
 mod error;
+mod event;
 #[cfg(feature = "report")]
 mod figures;
 #[cfg(feature = "report")]
@@ -43,6 +44,7 @@ use std::time::Instant;
 
 pub use digits::with_error;
 pub use error::OutputError;
+pub(crate) use event::EventText;
 pub(crate) use summary::drift;
 pub use summary::{
     EnergySummary, ErrorSummary, ProbeSummary, StageSummary, StagesSummary, Summary, WantedError,

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn events_of_every_kind_have_a_time() {
+    fn events_of_every_kind_have_a_time_or_a_load_factor() {
         let probe = Event::Probe {
             time: 0.5,
             probe: "tip".into(),
@@ -227,6 +227,12 @@ mod tests {
             rates: [0.0; 2],
         };
         let contact = Event::Contact { time: 0.75, contact: "arm.1".into(), touches: true, impulse: None };
-        assert_eq!((probe.time(), contact.time()), (0.5, 0.75));
+        let lost = Event::Stability {
+            load_factor: -0.25,
+            stability: "lost",
+            unstable_directions: None,
+            resolution: 0.0,
+        };
+        assert_eq!([probe, contact, lost].map(|event| event.parameter()), [0.5, 0.75, -0.25]);
     }
 }

@@ -83,7 +83,7 @@ impl Difference {
             sample.vy = sample.vy.map(|v| v / result);
         }
         for event in &mut self.events {
-            event.time /= result;
+            event.parameter /= result;
             event.value = event.value.map(|value| value / result);
             event.impulse = event.impulse.map(|impulse| impulse / result);
             event.largest_force = event.largest_force.map(|force| force / curvature);
@@ -104,7 +104,7 @@ impl Difference {
         none.records.fill(0.0);
         for event in &mut none.events {
             *event = EventErrors {
-                time: 0.0,
+                parameter: 0.0,
                 value: zero(event.value),
                 impulse: zero(event.impulse),
                 largest_force: zero(event.largest_force),
@@ -118,6 +118,12 @@ impl Difference {
             *sample = ProbeSample { vx: zero(sample.vx), vy: zero(sample.vy), ..ProbeSample::default() };
         }
         none
+    }
+
+    /// None at all of the same quantities but of the events, of which nothing is known where none are given.
+    pub fn with_events_alone(&self, events: Option<Vec<EventErrors>>) -> Self {
+        let unknown = || self.events.iter().map(|_| EventErrors::UNKNOWN).collect();
+        Self { events: events.unwrap_or_else(unknown), ..self.none() }
     }
 
     /// The errors of both together, in the cells of this one; `None` where they are not of as many records.
@@ -151,7 +157,7 @@ impl Difference {
         }
         for (a, b) in sum.events.iter_mut().zip(&other.events) {
             *a = EventErrors {
-                time: a.time + b.time,
+                parameter: a.parameter + b.parameter,
                 value: of(a.value, b.value),
                 impulse: of(a.impulse, b.impulse),
                 largest_force: of(a.largest_force, b.largest_force),
@@ -268,7 +274,7 @@ pub(super) mod tests {
                 }],
             }],
             events: vec![EventErrors {
-                time: 13.0 * k,
+                parameter: 13.0 * k,
                 value: Some(14.0 * k),
                 impulse: None,
                 largest_force: Some(15.0 * k),
@@ -299,7 +305,7 @@ pub(super) mod tests {
             };
             assert_eq!(found.probes[0].samples, [sample]);
             let event = EventErrors {
-                time: 13.0 * first,
+                parameter: 13.0 * first,
                 value: Some(14.0 * first),
                 impulse: None,
                 largest_force: Some(15.0 * second),

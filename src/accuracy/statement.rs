@@ -6,6 +6,9 @@ use crate::results::{ContactImpulse, Event, EventErrors, ProbeErrors, ProbeSampl
 /// The records around one whose errors count for it, on either side, as a part of the run.
 const WINDOW: usize = 20;
 
+/// The part of a load factor to which it is known where stability changes: nearer to a singular tangent round-off decides.
+const FOUND: f64 = 1e-7;
+
 /// Part of the largest relative error of a contact that those of its other numbers are at least.
 const LEAST: f64 = 0.2;
 
@@ -48,14 +51,14 @@ pub(super) fn of_probe(mut probe: ProbeErrors) -> ProbeErrors {
 pub(super) fn of_events(
     mut errors: Vec<EventErrors>,
     model: &Model,
-    motion: &Trajectory,
+    run: &Trajectory,
     probes: &[ProbeErrors],
 ) -> Vec<EventErrors> {
-    for (error, event) in errors.iter_mut().zip(&motion.events) {
+    for (error, event) in errors.iter_mut().zip(&run.events) {
         let Event::Probe { time, probe, quantity, turns, rates, .. } = event else { continue };
         let at = model.probes.iter().find(|of| of.name == *probe).map(|of| of.at);
         let samples = probes.iter().find(|of| of.name == *probe).map_or(&[][..], |of| &of.samples[..]);
-        let after = motion.parameter.partition_point(|record| record < time);
+        let after = run.parameter.partition_point(|record| record < time);
         let around = samples.iter().take(after + 1).skip(after.saturating_sub(1));
         let quantity = ProbeQuantity::ALL.into_iter().find(|of| of.name().0 == *quantity);
         let most = |of: &dyn Fn(ProbeQuantity, &ProbeSample) -> Option<f64>| {
@@ -68,14 +71,41 @@ pub(super) fn of_events(
             Some(_) => most(&of_rate).map_or(2.0 * (value / second).sqrt(), |rate| rate / second),
         });
         // Of what does not err 0/0 is made.
-        error.time = shift.map_or(f64::INFINITY, |shift| error.time.max(shift));
+        error.parameter = shift.map_or(f64::INFINITY, |shift| error.parameter.max(shift));
         error.value = error.value.map(|seen| seen.max(value.unwrap_or(f64::INFINITY)));
     }
-    of_contacts(&mut errors, &motion.events);
-    for (error, event) in errors.iter_mut().zip(&motion.events) {
-        error.time = error.time.max(f64::EPSILON * event.time());
+    of_contacts(&mut errors, &run.events);
+    of_modes(&mut errors, &run.events);
+    for (error, event) in errors.iter_mut().zip(&run.events) {
+        let least = match event {
+            Event::Stability { load_factor, resolution, .. } => resolution.max(FOUND * load_factor.abs()),
+            Event::Probe { time, .. } | Event::Contact { time, .. } => f64::EPSILON * time,
+        };
+        error.parameter = error.parameter.max(least);
     }
     errors
+}
+
+/// Where more directions are unstable already the next one is lost in shorter waves, which a mesh shows no better: the load factor errs by no
+/// smaller part than those before. Two meshes may err alike in one mode by chance.
+fn of_modes(errors: &mut [EventErrors], events: &[Event]) {
+    let lost = |event: &Event| match event {
+        Event::Stability {
+            stability: "lost", unstable_directions: Some([before, _]), load_factor, ..
+        } => Some((*before, load_factor.abs())),
+        _ => None,
+    };
+    let known: Vec<(usize, f64)> = events
+        .iter()
+        .zip(&*errors)
+        .filter_map(|(event, error)| lost(event).map(|(before, load)| (before, error.parameter / load)))
+        .filter(|(_, relative)| relative.is_finite())
+        .collect();
+    for (event, error) in events.iter().zip(errors) {
+        let Some((before, load)) = lost(event) else { continue };
+        let lower = known.iter().filter(|(others, _)| *others < before).map(|(_, relative)| relative * load);
+        error.parameter = lower.fold(error.parameter, f64::max);
+    }
 }
 
 /// What is known of a contact errs alike: of its duration, its impulse and its largest force none by less than a part of the largest
@@ -93,16 +123,16 @@ fn of_contacts(errors: &mut [EventErrors], events: &[Event]) {
         };
         let begins = |event: &Event| matches!(event, Event::Contact { contact: of, touches: true, .. } if of == contact);
         let Some(begin) = events[..end].iter().rposition(begins) else { continue };
-        let (duration, impulse) = (time - events[begin].time(), x.hypot(*y));
+        let (duration, impulse) = (time - events[begin].parameter(), x.hypot(*y));
         let relative = |error: f64, of: f64| if error.is_finite() && of > 0.0 { error / of } else { 0.0 };
-        let EventErrors { time, impulse: of_impulse, largest_force: of_force, .. } = errors[end];
+        let EventErrors { parameter: time, impulse: of_impulse, largest_force: of_force, .. } = errors[end];
         let largest = relative(time, duration)
-            .max(relative(errors[begin].time, duration))
+            .max(relative(errors[begin].parameter, duration))
             .max(relative(of_impulse.unwrap_or(0.0), impulse))
             .max(relative(of_force.unwrap_or(0.0), *largest_force));
         let least = |scale: f64| LEAST * largest * scale;
         for error in [begin, end] {
-            errors[error].time = errors[error].time.max(least(duration));
+            errors[error].parameter = errors[error].parameter.max(least(duration));
         }
         errors[end].impulse = of_impulse.map(|error| error.max(least(impulse)));
         errors[end].largest_force = of_force.map(|error| error.max(least(*largest_force)));
@@ -189,9 +219,9 @@ mod tests {
                 ..Trajectory::default()
             };
             let value = turns.map(|_| 0.0);
-            let errors = vec![EventErrors { time: seen, value, ..EventErrors::default() }];
+            let errors = vec![EventErrors { parameter: seen, value, ..EventErrors::default() }];
             let found = of_events(errors, scene.model(), &motion, &probes)[0];
-            (found.time, found.value)
+            (found.parameter, found.value)
         };
         assert_eq!(of("x", None, [-4.0, 0.0], 0.0), (0.125, None));
         assert_eq!(of("x", None, [4.0, 0.0], 0.25), (0.25, None), "what was seen is larger");
@@ -203,6 +233,45 @@ mod tests {
         assert_eq!(of("bending_moment", None, [8.0, 0.0], 0.0), (0.5, None));
         assert_eq!(of("axial_force", None, [8.0, 0.0], 0.0), (1.0, None));
         assert_eq!(of("shear_force", Some("maximum"), [8.0, 0.0], 0.0), (f64::INFINITY, Some(f64::INFINITY)));
+    }
+
+    /// Of the second mode a part of a hundredth is told, as of the first, and of the third, which errs by more, and of what is regained, what
+    /// was seen.
+    #[test]
+    fn higher_modes_are_known_no_better() {
+        let change = |load_factor: f64, stability: &'static str, directions: [usize; 2]| Event::Stability {
+            load_factor,
+            stability,
+            unstable_directions: Some(directions),
+            resolution: 0.0,
+        };
+        let events = vec![
+            change(1.0, "lost", [0, 1]),
+            change(-4.0, "lost", [1, 2]),
+            change(9.0, "lost", [2, 3]),
+            change(2.0, "regained", [3, 2]),
+        ];
+        let told =
+            [0.01, 1e-3, 0.5, 1e-3].map(|parameter| EventErrors { parameter, ..EventErrors::default() });
+        let path = Trajectory { events, ..Trajectory::default() };
+        let found = of_events(told.to_vec(), &Model::default(), &path, &[]);
+        assert_eq!(found.iter().map(|error| error.parameter).collect::<Vec<_>>(), [0.01, 0.04, 0.5, 1e-3]);
+    }
+
+    /// Two runs that agree tell no more than how far a change of stability was sought, and no more than round-off leaves.
+    #[test]
+    fn changes_of_stability_are_known_as_far_as_they_are_sought() {
+        let change = |load_factor: f64, resolution: f64| Event::Stability {
+            load_factor,
+            stability: "lost",
+            unstable_directions: None,
+            resolution,
+        };
+        let events = vec![change(-2.0, 0.0), change(0.5, 0.25), change(0.5, 0.25)];
+        let told = [0.0, 0.0, 1.0].map(|parameter| EventErrors { parameter, ..EventErrors::default() });
+        let path = Trajectory { events, ..Trajectory::default() };
+        let found = of_events(told.to_vec(), &Model::default(), &path, &[]);
+        assert_eq!(found.iter().map(|error| error.parameter).collect::<Vec<_>>(), [2e-7, 0.25, 1.0]);
     }
 
     /// A contact of 2 s with an impulse of 10 N s and up to 8 N, of which the duration errs by half: nothing errs by less than a tenth.
@@ -222,18 +291,18 @@ mod tests {
             contact(6.0, "leg.1", false),
         ];
         let ended = |time, impulse, largest_force| EventErrors {
-            time,
+            parameter: time,
             value: None,
             impulse: Some(impulse),
             largest_force: Some(largest_force),
         };
-        let at = |time: f64| EventErrors { time, ..EventErrors::default() };
+        let at = |time: f64| EventErrors { parameter: time, ..EventErrors::default() };
         let none = ended(0.0, 0.0, 0.0);
         let errors = vec![at(0.0), none, at(1.0), at(0.0), ended(0.0, 2.0, 0.0), EventErrors::UNKNOWN];
         let motion = Trajectory { events, ..Trajectory::default() };
         let found = of_events(errors, &Model::default(), &motion, &[]);
         assert_eq!(found[0], at(f64::EPSILON));
-        assert_eq!(found[1], EventErrors { time: f64::EPSILON, ..none });
+        assert_eq!(found[1], EventErrors { parameter: f64::EPSILON, ..none });
         assert_eq!((found[2], found[4]), (at(1.0), ended(0.2, 2.0, 0.8)));
         assert_eq!((found[3], found[5]), (at(2.0 * f64::EPSILON), EventErrors::UNKNOWN));
     }

@@ -9,12 +9,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::cost;
-use crate::model::{Analysis, ProbeQuantity};
+use crate::model::Analysis;
 use crate::output::plot::human;
-use crate::output::with_error;
-use crate::results::{
-    AnalysisKind, ContactImpulse, ErrorEstimate, Event, ProbeSample, Results, Run, Tension,
-};
+use crate::output::{EventText, with_error};
+use crate::results::{AnalysisKind, ErrorEstimate, ProbeSample, Results, Run, Tension};
 use crate::run::Progress;
 use crate::sweep;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -283,29 +281,9 @@ fn table(results: &Results, directory: &Path) -> String {
         row("energy", words.join(", "));
     }
     for (i, event) in trajectory.events.iter().enumerate() {
-        let error = run.error.as_ref().and_then(|error| error.events.get(i)).copied().unwrap_or_default();
-        let unknown = if error.time.is_finite() { "" } else { " (error unknown)" };
-        match event {
-            Event::Probe { time, probe, quantity, value, turns, .. } => {
-                let unit = ProbeQuantity::ALL.iter().map(|of| of.name()).find(|(name, _)| name == quantity);
-                let unit = unit.map_or("", |(_, unit)| unit);
-                let turns = turns.map_or_else(String::new, |turns| format!(", a {turns}"));
-                let value = format!("{} {unit}", known(*value, error.value));
-                let time = known(*time, Some(error.time));
-                let at = format!("{time} s{unknown}: {quantity} = {}{turns}", value.trim_end());
-                row(&format!("event at {probe}"), at);
-            }
-            Event::Contact { time, contact, touches, impulse } => {
-                let time = known(*time, Some(error.time));
-                let mut what = format!("{time} s{unknown}: {}", if *touches { "begins" } else { "ends" });
-                if let Some(ContactImpulse { impulse, largest_force }) = impulse {
-                    let [x, y] = impulse.map(|part| known(part, error.impulse));
-                    let force = known(*largest_force, error.largest_force);
-                    what.push_str(&format!(", impulse ({x}, {y}) N s, up to {force} N"));
-                }
-                row(&format!("contact {contact}"), what);
-            }
-        }
+        let errors = run.error.as_ref().and_then(|error| error.events.get(i)).copied();
+        let EventText { name, when, what } = EventText::new(event, errors, known);
+        row(&name, if what.is_empty() { when } else { format!("{when}: {what}") });
     }
     let counts = &run.statistics;
     let mut work = Vec::new();
@@ -418,8 +396,8 @@ mod tests {
     use crate::model::{Dynamic, Integrator, STEP_CONTROL, Static};
     use crate::output::OutputError;
     use crate::results::{
-        BucklingMode, CriticalLoads, Energy, EventErrors, ProbeSeries, Seconds, Statistics, Trajectory,
-        Vibration, Vibrations,
+        BucklingMode, ContactImpulse, CriticalLoads, Energy, Event, EventErrors, ProbeSeries, Seconds,
+        Statistics, Trajectory, Vibration, Vibrations,
     };
     use crate::scene::{self, SceneError};
     use indicatif::TermLike;
@@ -778,29 +756,41 @@ Arm
             rates: [0.0; 2],
         };
         let impulse = Some(ContactImpulse { impulse: [0.5, -0.25], largest_force: 32.0 });
+        let lost = |load_factor: f64, unstable_directions: Option<[usize; 2]>| Event::Stability {
+            load_factor,
+            stability: "lost",
+            unstable_directions,
+            resolution: 0.0,
+        };
         let events = vec![
             probe(0.5, None),
             probe(0.5625, Some("minimum")),
             probe(0.75, Some("minimum")),
             Event::Contact { time: 0.6875, contact: "arm.1".into(), touches: false, impulse },
+            lost(0.8125, Some([0, 1])),
+            lost(-0.25, None),
         ];
         let errors = vec![
-            EventErrors { time: 2e-4, ..EventErrors::default() },
-            EventErrors { time: 0.03, value: Some(2e-3), ..EventErrors::default() },
+            EventErrors { parameter: 2e-4, ..EventErrors::default() },
+            EventErrors { parameter: 0.03, value: Some(2e-3), ..EventErrors::default() },
             EventErrors { value: Some(f64::INFINITY), ..EventErrors::UNKNOWN },
-            EventErrors { time: 1e-3, value: None, impulse: Some(0.01), largest_force: Some(2.0) },
+            EventErrors { parameter: 1e-3, value: None, impulse: Some(0.01), largest_force: Some(2.0) },
+            EventErrors { parameter: 3e-5, ..EventErrors::default() },
+            EventErrors::UNKNOWN,
         ];
         let error = Some(Box::new(ErrorEstimate { events: errors, ..ErrorEstimate::default() }));
         let run = Run { analysis: AnalysisKind::Dynamic, error, ..Run::default() };
         let text = table(&Trajectory { run, events, ..Trajectory::default() }.into(), Path::new("arm"));
-        let rows: Vec<&str> = text.lines().filter(|line| line.contains(" s")).map(str::trim).collect();
+        let rows: Vec<&str> = text.lines().filter(|line| line.contains("  ")).map(str::trim).collect();
         let expected = [
-            "event at tip   0.5000(2) s: y = -0.125 m",
-            "event at tip   0.56(3) s: y = -0.125(2) m, a minimum",
-            "event at tip   0.75 s (error unknown): y = -0.125 m, a minimum",
-            "contact arm.1  0.688(1) s: ends, impulse (0.50(1), -0.25(1)) N s, up to 32(2) N",
+            "event at tip    0.5000(2) s: y = -0.125 m",
+            "event at tip    0.56(3) s: y = -0.125(2) m, a minimum",
+            "event at tip    0.75 s (error unknown): y = -0.125 m, a minimum",
+            "contact arm.1   0.688(1) s: ends, impulse (0.50(1), -0.25(1)) N s, up to 32(2) N",
+            "stability lost  load factor 0.81250(3): unstable directions 0 before, 1 after",
+            "stability lost  load factor -0.25 (error unknown)",
         ];
-        assert_eq!(&rows[..4], expected);
+        assert_eq!(&rows[1..7], expected);
     }
 
     #[test]

@@ -4,12 +4,13 @@ use askama::Template;
 
 use super::digits::with_error;
 use super::error::OutputError;
+use super::event::EventText;
 use super::figures::{self, Figure};
 use super::motion::Motion;
 use super::plot::human;
 use super::summary::{ProbeSummary, Summary};
 use crate::results::{
-    AnalysisKind, LargestStress, ProbeSample, Reaction, Results, SectionForces, Tension, Trajectory,
+    AnalysisKind, Event, LargestStress, ProbeSample, Reaction, Results, SectionForces, Tension, Trajectory,
 };
 
 #[derive(Template)]
@@ -56,6 +57,7 @@ impl<'a> Analysed<'a> {
                 reactions(t, summary),
                 tensions(t, summary),
                 energy(t, summary),
+                events(t),
             ]
             .into_iter()
             .flatten()
@@ -142,6 +144,8 @@ pub(super) fn page_of_stages(stages: &[(&str, Results)], complete: bool) -> Resu
     })
 }
 
+/// Events that a page tells one by one.
+const MOST_EVENTS: usize = 100;
 const STYLE: &str = include_str!("templates/report.css");
 const PLAYER: &str = include_str!("templates/player.js");
 
@@ -162,6 +166,29 @@ fn last(t: &Trajectory) -> String {
         (AnalysisKind::Dynamic, Some(&time)) => format!(" at {} s", human(time, 6)),
         _ => String::new(),
     }
+}
+
+fn events(t: &Trajectory) -> Option<NumberTable> {
+    let known = |value: f64, error: Option<f64>| {
+        error.and_then(|error| with_error(value, error)).unwrap_or_else(|| human(value, 7))
+    };
+    let row = |(i, event): (usize, &Event)| {
+        let errors = t.run.error.as_ref().and_then(|error| error.events.get(i)).copied();
+        let EventText { name, when, what } = EventText::new(event, errors, known);
+        vec![name, when, what]
+    };
+    let caption = match t.events.len() {
+        0 => return None,
+        count if count > MOST_EVENTS => {
+            format!("Events: the first {MOST_EVENTS} of {count}, which are all in summary.json")
+        }
+        _ => "Events".to_owned(),
+    };
+    Some(NumberTable {
+        caption,
+        header: ["event", "at", "what"].map(String::from).into(),
+        rows: t.events.iter().enumerate().take(MOST_EVENTS).map(row).collect(),
+    })
 }
 
 fn probes(t: &Trajectory, summary: &Summary) -> Option<NumberTable> {

@@ -36,7 +36,7 @@ pub struct Summary {
     pub stress: Vec<LargestStress>,
     /// Energies of the last record; `null` where there is none (modal, buckling).
     pub energy: Option<EnergySummary>,
-    /// Events of a motion, in order; left out where none was asked for or none happened.
+    /// Events of a motion that were asked for, or changes of stability along a path, in order; left out where there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<EventSummary>,
     /// Natural frequencies \[Hz\], ascending, 0 where nothing resists the motion; modal analysis
@@ -115,15 +115,46 @@ pub struct ProbeSummary {
     pub error: Option<ProbeSample>,
 }
 
-/// Something that happened in a motion.
+/// Something that happened in a motion, or along a path of equilibria.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EventSummary {
     /// What, and when.
     #[serde(flatten)]
     pub event: Event,
-    /// The estimated errors, where errors are known; an infinite one, of which nothing is known, becomes `null`.
+    /// The estimated errors, where errors are known.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<EventErrors>,
+    pub error: Option<EventErrorSummary>,
+}
+
+/// The estimated errors of an event; an infinite one, of which nothing is known, becomes `null`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct EventErrorSummary {
+    /// Of its time \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
+    /// Of its load factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_factor: Option<f64>,
+    /// Of the value at which a quantity turned back, in its unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// Of the impulse of a contact that ended: the length of the difference \[N s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impulse: Option<f64>,
+    /// Of the largest force of that contact \[N\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_force: Option<f64>,
+}
+
+impl EventErrorSummary {
+    fn new(event: &Event, errors: EventErrors) -> Self {
+        let EventErrors { parameter, value, impulse, largest_force } = errors;
+        let others = Self { value, impulse, largest_force, ..Self::default() };
+        match event {
+            Event::Stability { .. } => Self { load_factor: Some(parameter), ..others },
+            _ => Self { time: Some(parameter), ..others },
+        }
+    }
 }
 
 /// The estimated errors of the results.
@@ -199,12 +230,14 @@ pub struct EnergySummary {
     pub kinetic: f64,
     /// Of gravity and conservative loads.
     pub potential: f64,
-    /// Done by loads without a potential, moving supports and actuators since the start.
+    /// In a motion done by loads without a potential, moving supports and actuators since its start; along equilibria by actuators alone,
+    /// since the analysis began.
     pub work: f64,
     /// Taken by damping since the start; left out where there is none.
     #[serde(skip_serializing_if = "is_zero")]
     pub lost: f64,
-    /// Sum of the energies, less the work, plus the energy lost.
+    /// Sum of the energies, less the work, plus the energy lost: what is kept in a motion, and along equilibria where nothing but
+    /// actuators, and loads with a potential, do work.
     pub total: f64,
     /// max |total − initial total| / max kinetic over all records; `null` where nothing moves.
     pub drift: Option<f64>,
@@ -263,7 +296,9 @@ impl Summary {
                 .enumerate()
                 .map(|(i, event)| EventSummary {
                     event: event.clone(),
-                    error: error.and_then(|error| error.events.get(i)).copied(),
+                    error: error
+                        .and_then(|error| error.events.get(i))
+                        .map(|errors| EventErrorSummary::new(event, *errors)),
                 })
                 .collect(),
             frequency_errors: absolute(AnalysisKind::Modal),

@@ -30,7 +30,7 @@ pub struct ErrorEstimate {
     pub eigenvalues: Vec<f64>,
     /// Per probe and record.
     pub probes: Vec<ProbeErrors>,
-    /// Per event of a motion.
+    /// Per event.
     pub events: Vec<EventErrors>,
     /// Per record: the largest error of a position on any beam, in beam lengths.
     pub records: Vec<f64>,
@@ -132,25 +132,23 @@ pub struct ProbeErrors {
     pub samples: Vec<ProbeSample>,
 }
 
-/// Errors of an event of a motion; infinite where nothing is known of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+/// Errors of an event; infinite where nothing is known of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EventErrors {
-    /// Of its time \[s\].
-    pub time: f64,
+    /// Of its time \[s\] or load factor.
+    pub parameter: f64,
     /// Of the value at which a quantity turned back, in its unit.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// Of the impulse of a contact that ended: the length of the difference \[N s\].
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub impulse: Option<f64>,
     /// Of the largest force of that contact \[N\].
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_force: Option<f64>,
 }
 
 impl EventErrors {
     /// Of an event that a coarser run does not have.
-    pub const UNKNOWN: Self = Self { time: f64::INFINITY, value: None, impulse: None, largest_force: None };
+    pub const UNKNOWN: Self =
+        Self { parameter: f64::INFINITY, value: None, impulse: None, largest_force: None };
 }
 
 /// Where along a beam its positions and curvature err.

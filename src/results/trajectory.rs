@@ -179,13 +179,28 @@ pub enum Event {
         #[serde(flatten)]
         impulse: Option<ContactImpulse>,
     },
+    /// The equilibria of a path lost stability, or regained some of it: at a limit point or a bifurcation.
+    Stability {
+        /// Load factor.
+        load_factor: f64,
+        /// `lost` or `regained`.
+        stability: &'static str,
+        /// Number of directions in which equilibria are unstable before it and behind it, where the tangent tells more than the sign
+        /// of its determinant.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        unstable_directions: Option<[usize; 2]>,
+        /// By how much the load factor may be another one, since it was sought no further; not written.
+        #[serde(skip)]
+        resolution: f64,
+    },
 }
 
 impl Event {
-    /// When it happened \[s\].
-    pub fn time(&self) -> f64 {
+    /// Time \[s\] or load factor at which it happened.
+    pub fn parameter(&self) -> f64 {
         match self {
             Self::Probe { time, .. } | Self::Contact { time, .. } => *time,
+            Self::Stability { load_factor, .. } => *load_factor,
         }
     }
 }

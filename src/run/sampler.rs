@@ -646,7 +646,7 @@ impl<'a> Sampler<'a> {
                         let turn = turned.get(node).copied().unwrap_or_else(found);
                         unfold(now, series.samples.last().map(|sample| sample.angle + turn))
                     }
-                    (None, History::Angles(_)) => now,
+                    (None, History::Angles(_)) => unfold(now, None),
                 }
             });
             series.samples.push(ProbeSample {
@@ -754,6 +754,11 @@ impl<'a> Sampler<'a> {
         trajectory.history = solution.history.clone();
         trajectory.run.statistics = solution.statistics;
         trajectory.run.warnings.extend(stability::warnings(solution));
+        if analysis == AnalysisKind::Static {
+            let unseen = stability::unseen_waves(self.model, self.system, &trajectory.last);
+            trajectory.run.warnings.extend(unseen);
+        }
+        trajectory.events.extend(solution.events.iter().map(stability::event));
         trajectory
     }
 
@@ -1023,7 +1028,7 @@ impl<'a> Sampler<'a> {
             let contact = contacts.get(contact).cloned().unwrap_or_default();
             trajectory.events.push(Event::Contact { time, contact, touches, impulse });
         }
-        trajectory.events.sort_by(|a, b| a.time().total_cmp(&b.time()));
+        trajectory.events.sort_by(|a, b| a.parameter().total_cmp(&b.parameter()));
         for (contact, time) in &solution.crossings {
             trajectory.run.warnings.push(format!(
                 "contact {} gave way at t = {} s: the beam was pushed past the middle of the obstacle, which its `stiffness` \

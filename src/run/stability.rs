@@ -1,11 +1,18 @@
 //! Warnings of equilibria that are unstable, or that chance decides on.
 
+use crate::model::Model;
 use crate::numeric::plain;
+use crate::results::{Event, Shape};
 use crate::solve::stability::{Stability, StabilityChange};
 use crate::solve::statics::{Solution, UnstableMechanism};
+use crate::system::System;
+use std::f64::consts::PI;
 
 /// Changes of stability that are told one by one.
 const MOST: usize = 8;
+
+/// Cells of a half-wave that show at which load it grows to a thousandth.
+const CELLS_OF_WAVE: f64 = 4.0;
 
 /// What a static analysis has met on its way.
 pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
@@ -69,9 +76,54 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
     others.chain(told.iter().map(of_change)).chain(more)
 }
 
+/// What is said of beams that are pressed by so much that they might buckle in half-waves π √(EI/|N|) which are shorter than their cells: no
+/// mesh of these knows of it, and a straight beam has no error that would tell.
+pub fn unseen_waves(model: &Model, system: &System, last: &[Shape]) -> impl Iterator<Item = String> {
+    let beams = model.beams.iter().zip(system.beams()).zip(last);
+    beams.filter_map(|((beam, part), shape)| {
+        let bending = beam.section.bending_stiffness.as_ref()?;
+        let of_cell = |cell: &[f64]| {
+            let middle = 0.5 * (cell[0] + cell[1]);
+            let sample = shape.s.partition_point(|s| *s < middle);
+            let press = -shape.axial_force.get(sample)?;
+            let wave = PI * (bending.at(middle, middle) / press.max(0.0)).sqrt();
+            Some((cell[1] - cell[0], wave, press))
+        };
+        let cells = part.basis.nodes().windows(2).filter_map(of_cell);
+        let worst = cells.max_by(|(a, wave, _), (b, other, _)| (a / wave).total_cmp(&(b / other)));
+        let (cell, wave, press) = worst.filter(|(cell, wave, _)| cell > wave)?;
+        Some(format!(
+            "beam `{}` is pressed by {} N, under which it might buckle in half-waves of {} m, shorter than its cells of {} m: changes of \
+             stability may be missed, or be told at other loads; use more elements or nodes, about {} times as many",
+            beam.name,
+            plain(press, 4),
+            plain(wave, 4),
+            plain(cell, 4),
+            (CELLS_OF_WAVE * cell / wave).ceil()
+        ))
+    })
+}
+
+/// A change of stability as an event.
+pub fn event(change: &StabilityChange) -> Event {
+    let StabilityChange { load, resolution, before, after } = *change;
+    let (lost, unstable_directions) = match (before, after) {
+        (Stability::Directions(before), Stability::Directions(after)) => {
+            (after > before, Some([before, after]))
+        }
+        _ => (after.is_unstable(), None),
+    };
+    Event::Stability {
+        load_factor: load,
+        stability: if lost { "lost" } else { "regained" },
+        unstable_directions,
+        resolution,
+    }
+}
+
 /// What is said where directions lose or regain their stiffness.
 fn of_change(change: &StabilityChange) -> String {
-    let StabilityChange { load, before, after } = *change;
+    let StabilityChange { load, before, after, .. } = *change;
     let load = plain(load, 6);
     let unstable = "beyond it the equilibrium found is unstable: a bifurcation or a limit point";
     let (Stability::Directions(before), Stability::Directions(after)) = (before, after) else {
@@ -115,11 +167,28 @@ mod tests {
         );
     }
 
+    /// Of more directions that are unstable, of fewer, and where the sign of the determinant alone is known.
+    #[test]
+    fn changes_of_stability_are_events() {
+        let of = |before, after| match event(&StabilityChange { load: 0.5, resolution: 0.125, before, after })
+        {
+            Event::Stability { load_factor: 0.5, stability, unstable_directions, resolution: 0.125 } => {
+                (stability, unstable_directions)
+            }
+            other => panic!("{other:?}"),
+        };
+        let (directions, sign) = (Stability::Directions, Stability::NegativeDeterminants);
+        assert_eq!(of(directions(0), directions(2)), ("lost", Some([0, 2])));
+        assert_eq!(of(directions(2), directions(1)), ("regained", Some([2, 1])));
+        assert_eq!((of(sign(0), sign(1)), of(sign(1), sign(0))), (("lost", None), ("regained", None)));
+    }
+
     /// The first eight one by one, and the others together.
     #[test]
     fn many_changes_are_told_together() {
         let change = |k: usize| StabilityChange {
             load: 0.125 * (k + 1) as f64,
+            resolution: 0.0,
             before: Stability::Directions(k),
             after: Stability::Directions(k + 1),
         };

@@ -48,7 +48,7 @@ pub use closed::comes_back;
 
 use super::equilibrium::{AcrossPath, AtLoad, Equilibrium};
 use super::newton::{self, Failure, Iterations, Settings};
-use super::stability::Stability;
+use super::stability::{Stability, StabilityChange};
 use crate::assembly::{Earlier, Node, nodes};
 use crate::lanes::{cross, dot};
 use crate::solve::StepRecord;
@@ -248,10 +248,16 @@ impl<'e, 'a> Path<'e, 'a> {
         }
     }
 
-    /// Load factor at which stability has changed within the last step from what it was `before`: by bisection, or where a limit point
+    /// The change of stability within the last step from what it was `before` to what it is `after`: by bisection, or where a limit point
     /// within the step could not be made an end, the vertex of the parabola through the last three points, if it lies between them.
-    pub fn load_of_change(&mut self, before: Stability) -> f64 {
-        let [.., b, c] = &self.points[..] else { return self.last().load };
+    pub fn change(&mut self, before: Stability, after: Stability) -> StabilityChange {
+        let [load, resolution] = self.load_of_change(before);
+        StabilityChange { load, resolution, before, after }
+    }
+
+    /// The load factor of a change of stability within the last step, and by how much it may be another one.
+    fn load_of_change(&mut self, before: Stability) -> [f64; 2] {
+        let [.., b, c] = &self.points[..] else { return [self.last().load, f64::INFINITY] };
         if !turns_within([b, c].map(Point::load_rate)) {
             let mut bracket = [b.load, c.load];
             for _ in 0..HALVINGS {
@@ -265,17 +271,21 @@ impl<'e, 'a> Path<'e, 'a> {
                     None => break,
                 }
             }
-            return 0.5 * (bracket[0] + bracket[1]);
+            return [0.5 * (bracket[0] + bracket[1]), 0.5 * (bracket[1] - bracket[0]).abs()];
         }
-        let [.., a, b, c] = &self.points[..] else { return c.load };
+        let whole = (c.load - b.load).abs();
+        let [.., a, b, c] = &self.points[..] else { return [c.load, whole] };
         let slope = |p: &Point, q: &Point| (q.load - p.load) / (q.parameter - p.parameter);
         let (first, second) = (slope(a, b), slope(b, c));
         let bend = (second - first) / (c.parameter - a.parameter);
         let vertex = 0.5 * (a.parameter + b.parameter) - 0.5 * first / bend;
         if (a.parameter..=c.parameter).contains(&vertex) {
-            a.load + first * (vertex - a.parameter) + bend * (vertex - a.parameter) * (vertex - b.parameter)
+            let load = a.load
+                + first * (vertex - a.parameter)
+                + bend * (vertex - a.parameter) * (vertex - b.parameter);
+            [load, (load - b.load).abs().min((load - c.load).abs())]
         } else {
-            c.load
+            [c.load, whole]
         }
     }
 

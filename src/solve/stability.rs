@@ -49,8 +49,10 @@ impl Stability {
 /// Directions lost or regained their stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityChange {
-    /// Load factor at which it happened.
+    /// Load factor at which it happened …
     pub load: f64,
+    /// … and by how much that may be another one, since it was sought no further.
+    pub resolution: f64,
     /// Stability before.
     pub before: Stability,
     /// Stability after.

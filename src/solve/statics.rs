@@ -468,7 +468,7 @@ fn relaxed(
             if let (Ok(_), Some(after)) = (&outcome, stability(equilibrium, load, &x))
                 && before.is_lost(after)
             {
-                solution.events.push(StabilityChange { load, before, after });
+                solution.events.push(StabilityChange { load, resolution: step, before, after });
                 before = after;
             }
         }
@@ -595,7 +595,7 @@ fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
 fn notice(path: &mut Path<'_, '_>, known: &mut Option<Stability>, events: &mut Vec<StabilityChange>) {
     let Some(after) = path.last().stability else { return };
     let Some(before) = known.replace(after).filter(|before| before.differs(after)) else { return };
-    events.push(StabilityChange { load: path.load_of_change(before), before, after });
+    events.push(path.change(before, after));
 }
 
 /// A step of a path by arc length.
@@ -706,8 +706,11 @@ fn along_arc(
         if let Some(after) = point.stability
             && let Some(before) = known.replace(after).filter(|before| before.differs(after))
         {
-            let load = if at_limit && !reached { point.load } else { path.load_of_change(before) };
-            solution.events.push(StabilityChange { load, before, after });
+            let change = match at_limit && !reached {
+                true => StabilityChange { load: point.load, resolution: 0.0, before, after },
+                false => path.change(before, after),
+            };
+            solution.events.push(change);
         }
         work.add_states(system, (from.load, &from.x), (point.load, &point.x));
         solution.record(path.equilibrium, point.load, &point.x, work, &mut turned);

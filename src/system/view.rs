@@ -4,7 +4,7 @@ use crate::basis::{Basis, BasisError, BasisTable};
 use crate::effect::{Engineering, Green, Strain, curvature};
 use crate::model::StrainMeasure;
 use nalgebra::Vector2;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Local fields at one arc length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,9 +64,16 @@ pub struct Change {
     pub curvature: f64,
 }
 
-/// `angle` plus the multiple of a full turn that brings it nearest to `near`.
+/// Directions so near to −π are of the other sign by round-off \[rad\].
+const ROUND_OFF: f64 = 1e-9;
+
+/// `angle` plus the multiple of a full turn that brings it nearest to `near`; without one within half a turn, and just half a turn is π.
 pub fn unfold(angle: f64, near: Option<f64>) -> f64 {
-    near.map_or(angle, |near| angle + TAU * ((near - angle) / TAU).round())
+    match near {
+        Some(near) => angle + TAU * ((near - angle) / TAU).round(),
+        None if angle <= ROUND_OFF - PI => angle + TAU,
+        None => angle,
+    }
 }
 
 /// Shape functions of r, r', r'' at one or several points of a beam.

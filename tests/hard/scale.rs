@@ -143,7 +143,7 @@ fn dimensionless(units: Units, results: &Results) -> Vec<f64> {
     }
     let unit = if t.run.analysis == AnalysisKind::Modal { time } else { 1.0 };
     numbers.extend(results.eigenvalues().iter().map(|value| value * unit));
-    numbers.extend(t.events.iter().map(|event| event.time() / time));
+    numbers.extend(t.events.iter().map(|event| event.parameter() / if dynamic { time } else { 1.0 }));
     numbers
 }
 

@@ -46,7 +46,7 @@ fn thrown(integrator: &str, axis: &str, sign: f64, scale: f64, events: &[(f64, &
 }
 
 fn times(trajectory: &Trajectory) -> Vec<f64> {
-    trajectory.events.iter().map(Event::time).collect()
+    trajectory.events.iter().map(Event::parameter).collect()
 }
 
 proptest! {
@@ -202,7 +202,7 @@ fn speeds_are_met_on_both_sides_of_a_reversal() {
         );
         let scene = ancf::scene::parse("thrown.toml", &text).expect("a legal scene");
         let found = scene.model().solve(scene.analysis()).expect("a motion").into_states();
-        let times: Vec<f64> = found.events.iter().map(Event::time).collect();
+        let times: Vec<f64> = found.events.iter().map(Event::parameter).collect();
         let expected = [0.7, 0.998, 1.0, 1.0, 1.002, 1.3];
         let near = times.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6);
         assert!(times.len() == 6 && near, "{times:?} by {integrator}");

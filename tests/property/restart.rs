@@ -74,7 +74,7 @@ fn agree(whole: &Trajectory, second: &Trajectory, since: f64, what: &str) {
         assert_eq!(second.energy[i], whole.energy[j], "{what}, {time} s");
     }
     assert_eq!(second.parameter.last(), whole.parameter.last(), "{what}");
-    let times = |t: &Trajectory| t.events.iter().map(Event::time).collect::<Vec<_>>();
+    let times = |t: &Trajectory| t.events.iter().map(Event::parameter).collect::<Vec<_>>();
     let later: Vec<f64> = times(whole).into_iter().filter(|time| *time > since).collect();
     assert_eq!(times(second), later, "{what}");
     assert_eq!(second.saved, whole.saved, "{what}: another stop would leave the same");
@@ -114,7 +114,7 @@ fn a_motion_that_an_event_ended_goes_on() {
         let whole = solve(&motion(MOTIONS[0], 0.5, integrator, &events(false)));
         let first = solve(&motion(MOTIONS[0], 0.5, integrator, &events(true)));
         let since = *first.parameter.last().expect("a time");
-        assert_eq!((first.events.len(), first.events[0].time()), (1, since));
+        assert_eq!((first.events.len(), first.events[0].parameter()), (1, since));
         let rest = motion(MOTIONS[0], 0.5 - since, integrator, &events(false));
         agree(&whole, &go_on(&rest, &first).expect("a motion"), since, integrator);
     }

@@ -1,7 +1,12 @@
 //! Events on all quantities of a probe: when they happen, and the values there.
 
 use super::{ROD, Written, near};
+use ancf::Options;
+use ancf::accuracy::estimate;
+use ancf::output::Summary;
 use ancf::scene::parse;
+use serde_json::json;
+use std::f64::consts::PI;
 
 /// Times and values of the events of a scene, and the time at which its motion ends.
 fn events(text: &str) -> (Vec<(f64, f64)>, f64) {
@@ -353,4 +358,53 @@ fn errors_of_times_and_values_of_events_are_told() {
         analysis.dynamic = {{ duration = 1, output_every = 0.25, radau.tolerance = 1e-6, event = [{{ probe = 'middle', maximum = 'y' }}] }}"
     ));
     assert!(plain.summary()["events"][0].get("error").is_none());
+}
+
+/// Two stiff bars in a hinge, half an apart of 2 m and 0.5 m high, are pressed flat: with the length l of each, at first L, they carry
+/// P = 2 EA y (1/l − 1/L) at the height y, most of it where l³ = L, and as much upwards below. A clamped column of 1 m loses stability
+/// at π² EI/4.
+#[test]
+fn limit_loads_and_bifurcations_are_events() {
+    let truss = "beam.left = { start = [-1, 0], end = [0, 0.5], axial_stiffness = 1e3, bending_stiffness = 1e3, basis.ancf.elements = 2 }
+        beam.right = { start = [0, 0.5], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1e3, basis.ancf.elements = 2 }
+        support = [{ beam = 'left', at = 'start', fix = ['x', 'y'] }, { beam = 'right', at = 'end', fix = ['x', 'y'] }]
+        joint = [{ type = 'hinge', first = { beam = 'left', at = 'end' }, second = { beam = 'right', at = 'start' } }]
+        effect.force = [{ beam = 'left', at = 'end', value = [0, -10] }]
+        probe = [{ name = 'apex', beam = 'left', at = 'end' }]
+        analysis.static.arc_length = { until_probe = { probe = 'apex', y = -0.6 } }\n";
+    let long = 1.25_f64.sqrt();
+    let short = long.cbrt();
+    let most = 200.0 * (short * short - 1.0).sqrt() * (1.0 / short - 1.0 / long);
+    let column = |elements: usize, analysis: &str| {
+        format!(
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e8, bending_stiffness = 1, basis.ancf.elements = {elements} }}
+            support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{{ beam = 'arm', at = 'end', value = [-4, 0] }}]\nanalysis.static{analysis}\n"
+        )
+    };
+    let critical = PI * PI / 16.0;
+    for (text, expected) in [
+        (truss.to_owned(), vec![(most, "lost", [0, 1], 2e-7), (-most, "regained", [1, 0], 2e-7)]),
+        (column(4, " = {}"), vec![(critical, "lost", [0, 1], 3e-5)]),
+        (column(8, ".arc_length.until_load = 0.7"), vec![(critical, "lost", [0, 1], 2e-6)]),
+    ] {
+        let scene = parse("scene.toml", &text).expect("a scene");
+        let found = estimate(scene.model(), scene.analysis(), Options::default()).expect("a path");
+        let summary: serde_json::Value =
+            serde_json::from_str(&Summary::of(&found).to_json().expect("JSON")).expect("JSON");
+        let events = summary["events"].as_array().expect("events");
+        assert_eq!(events.len(), expected.len(), "{events:?}");
+        for (event, (load, stability, directions, tolerance)) in events.iter().zip(expected) {
+            let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+            let truth = (number(&event["load_factor"]) - load).abs();
+            assert!(truth <= tolerance * load.abs(), "{event}: {load}");
+            assert_eq!(
+                (&event["stability"], &event["unstable_directions"]),
+                (&json!(stability), &json!(directions))
+            );
+            let told = number(&event["error"]["load_factor"]);
+            assert!(truth <= 2.0 * told && told <= (10.0 * truth).max(1e-6), "{event}: {load}");
+            assert_eq!(event["error"].get("time"), None);
+        }
+    }
 }

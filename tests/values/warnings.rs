@@ -369,3 +369,30 @@ fn a_kink_within_a_string_is_told_with_what_it_is_off_by() {
     assert!(found.run.warnings.is_empty(), "{:?}", found.run.warnings);
     near(found.probes[0].samples.last().expect("a state").y, -low, 1e-9, "the middle of two strings");
 }
+
+/// A pinned column on a foundation of k = 1e6 N/m² buckles at 2 √(k EI) = 2000 N in ten half-waves, of which eight cells know nothing: those
+/// find other loads than the four that 2200 N pass, and say so. A column of as many cells on no foundation has long waves.
+#[test]
+fn waves_that_are_shorter_than_cells_are_told() {
+    let warnings = |elements: usize, press: f64, foundation: &str| {
+        let text = format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e9, bending_stiffness = 1, basis.ancf.elements = {elements} }}
+            support = [{{ beam = 'b', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'b', at = 'end', fix = ['y'] }}]
+            effect.force = [{{ beam = 'b', at = 'end', value = [{}, 0] }}]
+            {foundation}analysis.static = {{}}\n",
+            -press
+        );
+        let scene = parse("scene.toml", &text).expect("a scene");
+        let results = scene.model().solve(scene.analysis()).expect("an equilibrium");
+        let told =
+            results.run().warnings.iter().filter(|warning| warning.contains("might buckle in half-waves"));
+        (told.cloned().collect::<Vec<_>>(), results.states().events.len())
+    };
+    let foundation = "effect.foundation = [{ beam = 'b', stiffness = [0, 1e6] }]\n";
+    let (told, events) = warnings(8, 2200.0, foundation);
+    assert!(told.len() == 1 && events != 4, "{events}, {told:?}");
+    assert!(told[0].contains("of 0.0670 m, shorter than its cells of 0.1250 m"), "{told:?}");
+    let (told, events) = warnings(64, 2200.0, foundation);
+    assert_eq!((told.len(), events), (0, 4), "{told:?}");
+    assert_eq!(warnings(8, 12.0, "").0.len(), 0);
+}
