@@ -140,6 +140,17 @@ impl Curve {
         }
     }
 
+    /// Arc lengths \[m\] at which the slope of its curvature jumps, rising: those of the inner points of a curve through points.
+    pub fn kinks(&self) -> Vec<f64> {
+        match &self.0 {
+            Geometry::Line { .. } | Geometry::Arc { .. } => Vec::new(),
+            Geometry::Spline(Spline { panels, .. }) => {
+                let first = panels.windows(2).filter(|pair| pair[0].piece != pair[1].piece);
+                first.map(|pair| pair[1].start).collect()
+            }
+        }
+    }
+
     /// Curvature κ₀(s) \[1/m\], positive where the curve turns counter-clockwise.
     pub fn curvature(&self, s: f64) -> f64 {
         match &self.0 {
@@ -351,6 +362,24 @@ mod tests {
             assert_eq!(curve.tangent(0.0), [0.0, way]);
             assert_eq!(curve.curvature(1.0), way * 0.5);
         }
+    }
+
+    /// A curve through points may have kinks of its curvature at those within, and has one at the middle of five; a line has none.
+    #[test]
+    fn kinks_are_at_the_inner_points() {
+        let points = vec![[0.0, 0.0], [0.3, 0.5], [1.0, 0.4], [1.2, -0.6], [2.0, -0.5]];
+        let curve = Curve::new(&Centreline::Points(points.clone())).unwrap();
+        let kinks = curve.kinks();
+        assert_eq!(kinks.len(), 3);
+        for (s, point) in kinks.into_iter().zip(&points[1..]) {
+            let [x, y] = curve.position(s);
+            assert!((x - point[0]).hypot(y - point[1]) < 1e-14);
+            let slope = |by: f64| (curve.curvature(s + by) - curve.curvature(s)) / by;
+            let is_middle = point == &points[2];
+            assert!(!is_middle || (slope(1e-6) - slope(-1e-6)).abs() > 1.0);
+        }
+        let line = Centreline::Points(vec![[0.0, 0.0], [0.3, 0.5]]);
+        assert!(Curve::new(&line).unwrap().kinks().is_empty());
     }
 
     /// The spline is parametrised by arc length: |dr/ds| = 1 by central differences.

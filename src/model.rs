@@ -28,6 +28,7 @@ pub use crate::centreline::Centreline;
 pub use crate::law::{Expression, Law, Tabulated};
 
 use crate::assembly::{Part, Resistance};
+use crate::centreline::Curve;
 use std::sync::Arc;
 
 /// A complete mechanical model.
@@ -58,12 +59,26 @@ pub struct Model {
     pub standing: Option<Vec<usize>>,
     /// What acted in that state and has gone, if it [fades](Part::fades), with the time of the state \[s\].
     pub fading: Vec<(Arc<dyn Part>, f64)>,
+    /// What comes after the state from which the stage starts that this is the model of: nothing that acted in that state is the same, though
+    /// it may be said in the same words.
+    pub entering: Entering,
     /// The numbers by which results name the supports and the joints, where these are not 1, 2, 3, …:
     /// those of the scene, of which a stage may have fewer.
     pub numbers: [Vec<usize>; 2],
     /// Places at which there is a node although nothing in the model asks for one: where other
     /// stages of the same scene need it.
     pub nodes_at: Vec<Place>,
+}
+
+/// What comes with a stage, as indices of the lists of its model.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Entering {
+    /// Of [supports](Model::supports).
+    pub supports: Vec<usize>,
+    /// Of [joints](Model::joints).
+    pub joints: Vec<usize>,
+    /// Of [parts](Model::parts).
+    pub parts: Vec<usize>,
 }
 
 impl Model {
@@ -102,6 +117,23 @@ impl Model {
         parts
             .chain(self.joints.iter().flat_map(Joint::places))
             .chain(self.supports.iter().map(|support| support.at))
+    }
+
+    /// The arc lengths \[m\] along a beam at which what parts do along it [jumps or has a corner](Part::edges), or the curvature of its
+    /// centreline has a corner.
+    pub fn edges(&self, beam: usize) -> Vec<f64> {
+        let edges = self.parts.iter().flat_map(|part| part.edges());
+        let edges = edges.filter(|at| at.beam == beam).map(|at| at.s);
+        // A centreline that is none is refused where the model is built.
+        let corners = Curve::new(&self.beams[beam].centreline).map_or_else(
+            |_| Vec::new(),
+            |curve| {
+                let s: Vec<f64> = [vec![0.0], curve.kinks(), vec![curve.length()]].concat();
+                let value = s.iter().map(|s| curve.curvature(*s)).collect();
+                Along::Table { s, value }.edges()
+            },
+        );
+        edges.chain(corners).collect()
     }
 
     /// The arc lengths \[m\] along a beam at which there must be a node and supports of shape

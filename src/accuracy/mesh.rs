@@ -9,7 +9,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use crate::centreline::Curve;
-use crate::model::{Along, Model, Nodes, Section};
+use crate::model::{Along, Discretization, Model, Nodes, Section};
 
 /// Cells with which the search begins, of the longest beam; fewer are of no use …
 const FIRST: f64 = 4.0;
@@ -90,8 +90,11 @@ impl Mesh {
             let mut breaks = model.breaks(beam);
             let supports = model.supports.iter().map(|support| support.at);
             let points = supports.chain(model.parts.iter().filter_map(|part| part.point()));
-            let edges = model.parts.iter().flat_map(|part| part.edges());
-            breaks.extend(points.chain(edges).filter(|at| at.beam == beam).map(|at| at.s));
+            breaks.extend(points.filter(|at| at.beam == beam).map(|at| at.s));
+            // Meshfree nodes that are close amplify round-off.
+            if !matches!(model.beams[beam].discretization, Discretization::Rpim { .. }) {
+                breaks.extend(model.edges(beam));
+            }
             breaks.sort_by(f64::total_cmp);
             for s in breaks.into_iter().filter(|s| *s < (1.0 - SAME) * length) {
                 if fixed.last().is_some_and(|last| s - last > SAME * length) {

@@ -466,6 +466,8 @@ impl<'a, 'o> Runner<'a, 'o> {
         let difference = difference.and_then(|difference| {
             let steps = self.beside_chosen_steps(&stations, &setting, &results, &difference)?;
             unseen = both(unseen.take(), steps);
+            unseen =
+                both(unseen.take(), self.changes_beside_jumps(&stations, &setting, &results, &difference));
             Ok(difference)
         });
         if let (Ok(difference), Results::Trajectory(run)) = (&difference, &results) {

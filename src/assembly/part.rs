@@ -35,12 +35,12 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
     }
 
     /// Places that are to be nodes, because the curvature of the beam jumps there for another reason
-    /// than a couple, or because the part ends there.
+    /// than a couple, or its slope does so much that a cell would not see what lies between, or because the part ends there.
     fn jumps(&self) -> Vec<Place> {
         Vec::new()
     }
 
-    /// Places at which what the part does along a beam jumps, where it begins or ends for instance. They need not be nodes, but what
+    /// Places at which what the part does along a beam jumps, where it begins or ends for instance, or has a corner. They need not be nodes, but what
     /// a mesh errs by depends on where in a cell they lie.
     fn edges(&self) -> Vec<Place> {
         Vec::new()
@@ -85,9 +85,10 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
     }
 }
 
-/// The places of beam `beam` at which quantities along it jump.
+/// The places of beam `beam` at which quantities along it jump, or their slopes do so much that it matters.
 pub fn jumps_along<'q>(beam: usize, quantities: impl IntoIterator<Item = &'q Along>) -> Vec<Place> {
-    quantities.into_iter().flat_map(Along::jumps).map(|s| Place::new(beam, s)).collect()
+    let places = quantities.into_iter().flat_map(|quantity| quantity.edges());
+    places.map(|s| Place::new(beam, s)).collect()
 }
 
 /// Strains that an actuation imposes on a beam.

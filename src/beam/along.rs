@@ -207,12 +207,38 @@ impl Along {
 
     /// Arc lengths \[m\], rising, of the kinks between which it is, within a factor of `within`, what
     /// a straight line in its logarithm says: a narrow notch of a table has three. Where it is not
-    /// positive there are none. The places are chosen as D. H. Douglas and T. K. Peucker do
-    /// (*Cartographica* 10, 1973, 112–122).
+    /// positive there are none.
     pub fn corners(&self, within: f64) -> Vec<f64> {
-        let (mut kinks, jumps) = (self.kinks(), self.jumps());
+        self.off_lines(&self.sorted_kinks(), f64::ln, within.ln())
+    }
+
+    /// Arc lengths \[m\], rising, at which it jumps, and of the kinks between which it is, within a twentieth of the largest value, what
+    /// a straight line says: a narrow peak of a table has three.
+    pub fn edges(&self) -> Vec<f64> {
+        /// The part of the largest value by which it may depart from a straight line.
+        const STRAIGHT: f64 = 0.05;
+        let kinks = self.sorted_kinks();
+        let values =
+            kinks.windows(2).flat_map(|ends| ends.iter().map(|s| self.at(*s, 0.5 * (ends[0] + ends[1]))));
+        let largest = values.fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let mut places = self.off_lines(&kinks, |value| value, STRAIGHT * largest);
+        places.extend(self.jumps());
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        places
+    }
+
+    fn sorted_kinks(&self) -> Vec<f64> {
+        let mut kinks = self.kinks();
         kinks.sort_by(f64::total_cmp);
         kinks.dedup();
+        kinks
+    }
+
+    /// Those of its `kinks`, which rise, between which a measure of its values is within `tolerance` what a straight line says, where
+    /// the measure is finite. They are chosen as D. H. Douglas and T. K. Peucker do (*Cartographica* 10, 1973, 112–122).
+    fn off_lines(&self, kinks: &[f64], measure: impl Fn(f64) -> f64, tolerance: f64) -> Vec<f64> {
+        let jumps = self.jumps();
         let mut corners = Vec::new();
         let mut start = 0;
         for end in 1..kinks.len() {
@@ -224,9 +250,10 @@ impl Along {
                 let beside = if i == 0 { smooth[1] } else { smooth[i - 1] };
                 self.at(smooth[i], 0.5 * (smooth[i] + beside))
             };
-            let points: Vec<[f64; 2]> = smooth.iter().enumerate().map(|(i, s)| [*s, value(i).ln()]).collect();
-            if points.iter().all(|[_, logarithm]| logarithm.is_finite()) {
-                off_the_line(&points, within.ln(), &mut corners);
+            let points: Vec<[f64; 2]> =
+                smooth.iter().enumerate().map(|(i, s)| [*s, measure(value(i))]).collect();
+            if points.iter().all(|[_, measure]| measure.is_finite()) {
+                off_the_line(&points, tolerance, &mut corners);
             }
             start = end;
         }
@@ -461,6 +488,18 @@ mod tests {
         assert_eq!([Along::Constant(2.0), pieces()].map(|along| along.corners(1.5).len()), [0, 0]);
         let through_zero = Along::Table { s: vec![0.0, 1.0, 2.0], value: vec![1.0, 0.0, 1.0] };
         assert!(through_zero.corners(1.5).is_empty());
+    }
+
+    /// A peak of a quantity of any sign has three, however small it is, and a table that is nearly straight none.
+    #[test]
+    fn edges_are_where_a_line_would_miss_by_a_part_of_the_largest_value() {
+        let table = |value: Vec<f64>| Along::Table { s: vec![0.0, 4.0, 4.5, 5.0, 6.0, 10.0], value };
+        let peak = table(vec![0.0, 0.0, -0.5e-6, -1e-6, 0.0, 0.0]);
+        assert_eq!(peak.edges(), [4.0, 5.0, 6.0]);
+        assert!(table(vec![-0.4, -0.01, 0.05, 0.1, 0.2, 0.6]).edges().is_empty());
+        let stepped = peak.product(&pieces());
+        assert_eq!(stepped.edges(), [1.0, 4.0, 5.0, 6.0]);
+        assert_eq!([Along::Constant(2.0), pieces()].map(|along| along.edges().len()), [0, 1]);
     }
 
     #[test]

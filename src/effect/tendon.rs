@@ -3,6 +3,7 @@
 use super::{Engineering, PreStrain, Strain, bend};
 use crate::assembly::{
     Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, TendonPath,
+    jumps_along,
 };
 use crate::beam::{Along, Place};
 use crate::lanes;
@@ -88,7 +89,12 @@ impl Part for Tendon {
     }
 
     fn jumps(&self) -> Vec<Place> {
-        self.path.ends.iter().map(|s| Place::new(self.beam, *s)).collect()
+        let [from, to] = self.path.ends;
+        let within = |at: &Place| from < at.s && at.s < to;
+        let mut places = jumps_along(self.beam, [&self.path.offset]);
+        places.retain(within);
+        places.extend(self.path.ends.iter().map(|s| Place::new(self.beam, *s)));
+        places
     }
 
     fn tendon(&self) -> Option<(usize, &TendonPath, Option<&Law>)> {

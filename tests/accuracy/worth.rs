@@ -1,6 +1,9 @@
 //! The estimate against closed forms: the accuracy is met, and the true error is near the estimate.
 
 use super::{cantilever, error, estimate, last, run, scene};
+use ancf::centreline::Curve;
+use ancf::model::Centreline;
+use ancf::results::Results;
 use std::f64::consts::{PI, TAU};
 
 /// The true error is no larger than wanted, and not far from the estimate: at most three times as
@@ -116,6 +119,63 @@ fn layers_at_free_ends_are_told_or_resolved() {
     };
     assert!(of("1e-3") > 1e-3);
     assert!(of("{ position = 1e-4, curvature = 1e-2 }") < 1e-6);
+}
+
+/// The same tight cable under an even load q, held at its start by a clamp or by a torsion spring of k: EI w⁗ − T w″ = −q, so that
+/// w = a (e^(−x/λ) − 1) + c e^((x − L)/λ) + b x + q x²/2T with λ = √(EI/T), which is so short that e^(−L/λ) is nothing. Cells that are long
+/// against λ show nothing of the layer, and its curvature and direction are told.
+#[test]
+fn layers_at_held_ends_are_told() {
+    let (tension, bend, load) = (100.0_f64, 1e-3_f64, 1.0_f64);
+    let (layer, string) = ((bend / tension).sqrt(), load / tension);
+    for (fix, spring) in
+        [("'x', 'y', 'angle'", f64::INFINITY), ("'x', 'y'", 0.01), ("'x', 'y'", 1.0), ("'x', 'y'", 100.0)]
+    {
+        // No moment holds the other end, and w(L) = 0 gives b.
+        let c = -string * layer * layer;
+        let slope = |a: f64| a - c - 0.5 * string;
+        let angle = |a: f64| slope(a) - a / layer;
+        let curvature = |a: f64| string + a / (layer * layer);
+        let a = if spring.is_finite() {
+            // EI κ = k θ.
+            (spring * (-c - 0.5 * string) - bend * string)
+                / (bend / (layer * layer) + spring * (1.0 / layer - 1.0))
+        } else {
+            (-c - 0.5 * string) / (1.0 / layer - 1.0)
+        };
+        for accuracy in ["1e-2", "1e-3", "1e-4", "1e-6"] {
+            let sprung = match spring.is_finite() {
+                true => format!(
+                    "effect.torsion_spring = [{{ beam = 'cable', at = 'start', stiffness = {spring:?} }}]\n"
+                ),
+                false => String::new(),
+            };
+            let results = run(&scene(&format!(
+                "beam.cable = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e7, bending_stiffness = {bend:e} }}
+                support = [{{ beam = 'cable', at = 'start', fix = [{fix}] }}, {{ beam = 'cable', at = 'end', fix = ['y'] }}]
+                effect.force = [{{ beam = 'cable', at = 'end', value = [{tension:?}, 0] }}]
+                effect.distributed_force = [{{ beam = 'cable', value = [0, {}] }}]
+                probe = [{{ name = 'held', beam = 'cable', at = 'start' }}]
+                {sprung}analysis.static.accuracy = {accuracy}",
+                -load
+            )));
+            let (found, told) = (last(&results), error(&results));
+            let errors = told.probes[0].samples.last().expect("a state");
+            let truth = (found.curvature - curvature(a)).abs();
+            assert!(
+                truth <= 2.0 * errors.curvature && errors.curvature <= 10.0 * truth,
+                "{spring}, {accuracy}: curvature {truth:e}, told {:e}",
+                errors.curvature
+            );
+            // Angles are so small that their sine is what the linear theory has, to a part in a hundred thousand.
+            let truth = (found.angle - angle(a)).abs();
+            assert!(
+                truth <= 2.0 * errors.angle + 2e-7,
+                "{spring}, {accuracy}: angle {truth:e}, told {:e}",
+                errors.angle
+            );
+        }
+    }
 }
 
 /// A motion that an event ends has no record but the start in common with another run of it: the
@@ -843,4 +903,110 @@ fn impacts_within_steps_of_a_given_length_are_seen() {
         let (truth, told) = (errors.fold(0.0, f64::max) / 0.5, error(&results).estimated.result);
         assert!(truth <= 1.5 * told && told <= 3.0 * truth, "{integrator}: {truth:.1e}, told {told:.1e}");
     }
+}
+
+/// A shallow arch that is pressed at its crown leaves its symmetric path and comes back to it where the motion aside begins, in which the
+/// axial force jumps at the crown: one beam rounds off its strain, and these load factors err with the first order, while the limit loads
+/// and all positions fall much faster. Coarser meshes show the latter only.
+#[test]
+fn load_factors_of_bifurcations_are_told() {
+    let of = |elements: usize| {
+        scene(&format!(
+            "beam.arch = {{ arc = {{ center = [0, 2.4], radius = 2.6, from = '-112.61986494804043 deg', to = '-67.38013505195957 deg' }}, \
+                axial_stiffness = 400, bending_stiffness = 1, basis.ancf.elements = {elements} }}
+            support = [{{ beam = 'arch', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'arch', at = 'end', fix = ['x', 'y'] }}]
+            effect.force = [{{ beam = 'arch', at = 1.02645691121938, value = [0, 20] }}]
+            probe = [{{ name = 'crown', beam = 'arch', at = 1.02645691121938 }}]
+            analysis.static.arc_length = {{ max_step = 0.01, until_probe = {{ probe = 'crown', y = 0.3 }} }}\n"
+        ))
+    };
+    let loads = |results: &Results| -> Vec<f64> {
+        results.states().events.iter().map(ancf::results::Event::parameter).collect()
+    };
+    let fine = of(640);
+    let fine = loads(&fine.model().solve(fine.analysis()).expect("a path"));
+    for elements in [16, 64] {
+        let results = estimate(&of(elements));
+        let found = loads(&results);
+        assert_eq!((found.len(), fine.len()), (4, 4), "{found:?} {fine:?}");
+        for ((found, fine), errors) in found.iter().zip(&fine).zip(&error(&results).events) {
+            let (truth, told) = ((found - fine).abs(), errors.parameter);
+            assert!(
+                truth <= 2.0 * told && told <= 20.0 * truth.max(1e-9),
+                "{elements}: {truth:e}, told {told:e}"
+            );
+        }
+        // The position at the end, which no such error reaches, is better known by far.
+        assert!(
+            elements < 64 || error(&results).estimated.result < 0.1 * error(&results).events[1].parameter
+        );
+    }
+}
+
+/// A beam along a curve through points has the direction of that curve where next to nothing loads it. The slope of its curvature jumps at
+/// the points, and within a cell directions would err with a lower order than coarser meshes tell.
+#[test]
+fn corners_of_the_curvature_of_a_centreline_are_seen() {
+    let points = [[0.0, -0.0748], [0.25, 0.0389], [0.5, 0.133], [0.75, 0.0333], [1.0, -0.022]];
+    let curve = Curve::new(&Centreline::Points(points.to_vec())).expect("a curve");
+    let places = [0.2131, 0.3935, 0.5313, 0.5427, 0.5796, 0.6978, 0.9258];
+    let probes = places.map(|s| format!("{{ name = 'at {s}', beam = 'b', at = {s} }}")).join(", ");
+    for (basis, accuracy) in
+        [("", "{ accuracy = 1e-3 }"), ("", "{ accuracy = 1e-5 }"), (", basis.ancf.elements = 12", "{}")]
+    {
+        let scene = scene(&format!(
+            "beam.b = {{ points = {points:?}, axial_stiffness = 1e5, bending_stiffness = 1{basis} }}
+            support = [{{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }}]
+            effect.force = [{{ beam = 'b', at = 'end', value = [0, 1e-12] }}]
+            probe = [{probes}]\nanalysis.static = {accuracy}\n"
+        ));
+        let results = if basis.is_empty() { run(&scene) } else { estimate(&scene) };
+        let told = &error(&results).probes;
+        for ((s, series), told) in places.into_iter().zip(&results.states().probes).zip(told) {
+            let (found, told) =
+                (series.samples.last().expect("a state"), told.samples.last().expect("errors"));
+            let ([x, y], [along, across]) = (curve.position(s), curve.tangent(s));
+            // Within a cell directions fall with the third order, and are told by the fourth of positions: 15/7 too small.
+            let truth = (found.angle - across.atan2(along)).abs();
+            assert!(truth <= 6.5 * told.angle, "{accuracy}, {s}: {truth:e}, told {:e}", told.angle);
+            let truth = (found.x - x).hypot(found.y - y);
+            assert!(truth <= 4.0 * told.x, "{accuracy}, {s}: {truth:e}, told {:e}", told.x);
+        }
+    }
+}
+
+/// A tight cable over a support in its middle: the strings on both sides come with the slopes ±q L/(4 T), up to λ², and it bends by
+/// q/T − q L/(4 T λ) over the support. Long cells show nothing of that, and its curvature and the directions beside it are told.
+#[test]
+fn layers_at_points_within_a_beam_are_told() {
+    let (tension, bend, load) = (1.0_f64, 1e-6_f64, 0.01_f64);
+    let layer = (bend / tension).sqrt();
+    let slope = load / (4.0 * tension) - load * layer / tension;
+    let curvature = load / tension - slope / layer;
+    let beside = 0.5 - 3.0 * layer;
+    let angle = slope * (1.0 - (-3.0_f64).exp());
+    let text = format!(
+        "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e6, bending_stiffness = {bend:e}, basis.ancf.elements = 8 }}
+        support = [{{ beam = 'b', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'b', at = 'end', fix = ['y'] }}, {{ beam = 'b', at = 0.5, fix = ['y'] }}]
+        effect.force = [{{ beam = 'b', at = 'end', value = [{tension:?}, 0] }}]
+        effect.distributed_force = [{{ beam = 'b', value = [0, {}] }}]
+        probe = [{{ name = 'over', beam = 'b', at = 0.5 }}, {{ name = 'beside', beam = 'b', at = {beside:?} }}]
+        analysis.static = {{}}\n",
+        -load
+    );
+    let results = estimate(&scene(&text));
+    let told = &error(&results).probes;
+    let of = |probe: usize| {
+        let found = results.states().probes[probe].samples.last().expect("a state");
+        (*found, *told[probe].samples.last().expect("errors"))
+    };
+    let (found, errors) = of(0);
+    let truth = (found.curvature - curvature).abs();
+    assert!(
+        truth > 1.0 && truth <= 2.0 * errors.curvature && errors.curvature <= 10.0 * truth,
+        "{truth:e} {errors:?}"
+    );
+    let (found, errors) = of(1);
+    let truth = (found.angle - angle).abs();
+    assert!(truth <= 2.0 * errors.angle && errors.angle <= 10.0 * truth, "{truth:e} {errors:?}");
 }

@@ -1,17 +1,24 @@
-//! Layers at the ends of tight beams that no cell shows.
+//! Layers at the ends of tight beams, and at points within them, that no cell shows.
 //!
 //! Under a tension N a beam bends otherwise than a string only within a few λ = √(EI/N) of an end, or of what acts in a point. At an end
 //! that turns freely its curvature goes over from that of the string to M/EI. With κ the difference of both, at the distance d, this
 //! changes its curvature by κ e^(−d/λ), its direction by κ λ e^(−d/λ) and its position by κ λ² (1 − e^(−d/λ)). Where all cells are longer
 //! than λ every mesh has the curvature of the string up to the end, so that coarser meshes tell nothing of that.
+//!
+//! At an end that is held the direction goes over from the θ₀ of the string to another one, θ, and the curvature there is
+//! κ = κ₀ ± (θ₀ − θ)/λ, with κ₀ that of the string and the sign of the start or the end of the beam. A clamp gives θ; a torsion spring turns
+//! until its moment is EI κ. Long cells bend by far less. At a clamp positions err by a part of the cell's length times θ₀ − θ, which coarser
+//! meshes do tell; a moment of a spring that is off by ΔM moves the string by ΔM/N, which they do not.
 
+use super::places::interpolated;
 use super::{Difference, larger};
 use crate::accuracy::mesh::turning;
 use crate::centreline::Curve;
-use crate::effect::Moment;
+use crate::effect::{Moment, TorsionSpring};
 use crate::model::{FixedRotation, Joint, Model, Place};
-use crate::results::{AnalysisKind, Trajectory};
+use crate::results::{AnalysisKind, Shape, Trajectory};
 use std::any::Any;
+use std::f64::consts::TAU;
 
 /// The part of κ λ² by which positions are off within the cell: on average over it they are right.
 const OF_CELL: f64 = 0.5;
@@ -48,9 +55,7 @@ pub(in crate::accuracy) fn layers(
     }
     let (mut sum, mut found) = (difference.none(), Vec::new());
     for (index, ((beam, nodes), shape)) in model.beams.iter().zip(nodes).zip(&run.last).enumerate() {
-        let (Some(bending), &[first, second, .., before, last]) =
-            (&beam.section.bending_stiffness, &nodes[..])
-        else {
+        let (Some(bending), &[_, _, .., _, last]) = (&beam.section.bending_stiffness, &nodes[..]) else {
             continue;
         };
         // Of others the moment is not EI κ.
@@ -59,31 +64,43 @@ pub(in crate::accuracy) fn layers(
         if !straight || actuated || !beam.section.is_linear() {
             continue;
         }
-        for (end, cell, k) in
-            [(first, second - first, 0), (last, last - before, shape.s.len().saturating_sub(1))]
-        {
-            let of = |along: &[f64]| along.get(k).copied();
+        let is_point =
+            |s: f64| model.points().any(|at| at.beam == index && (at.s - s).abs() <= super::SAME * last);
+        // Both sides of a point within the beam end there.
+        let ends = nodes.windows(2).enumerate().flat_map(|(i, cell)| {
+            let begins = i == 0 || is_point(cell[0]);
+            let ends = i + 2 == nodes.len() || is_point(cell[1]);
+            let length = cell[1] - cell[0];
+            let begin = begins.then_some((cell[0], 1.0, length));
+            begin.into_iter().chain(ends.then_some((cell[1], -1.0, length)))
+        });
+        for (end, side, cell) in ends {
+            let of = |along: &[f64]| interpolated(&shape.s, along, end, side > 0.0);
             let values = of(&shape.axial_force).zip(of(&shape.bending_moment)).zip(of(&shape.curvature));
-            let Some(((tension, moment), seen)) = values.filter(|((tension, _), _)| *tension > 0.0) else {
-                continue;
-            };
+            let Some((((tension, moment), seen), angle)) = values.zip(of(&shape.angle)) else { continue };
             let stiffness = bending.at(end, 0.5 * last);
             let layer = (stiffness / tension).sqrt();
             // Cells that are little longer see a part of the layer, and other meshes tell the rest.
             let hidden = 1.0 - SEEN * layer / cell;
-            if hidden <= 0.0 || !turns_freely(model, index, end, last) {
+            let Some(resists) = resistance(model, index, end, last).filter(|_| tension > 0.0 && hidden > 0.0)
+            else {
                 continue;
-            }
-            let curvature = hidden * (seen - moment / stiffness).abs();
+            };
+            let here = End { s: end, side, cell, stiffness, layer, moment, curvature: seen, angle };
+            let Some(off) = here.off(shape, resists) else { continue };
+            let Off { curvature, turned, beside, position, shift } = off.times(hidden);
+            let most = larger(position, shift) / last;
             let of_largest = |scale: f64| if scale > 0.0 { curvature / scale } else { 0.0 };
             let error = of_largest(difference.scales.curvature);
             sum.errors.curvature = sum.errors.curvature.map(|most| larger(most, error));
-            let off = OF_CELL * curvature * layer * layer;
-            found.push(Layer { beam: index, end, length: layer, curvature: error, position: off / last });
-            sum.errors.result = larger(sum.errors.result, off / last);
-            sum.records.iter_mut().for_each(|record| *record = larger(*record, off / last));
+            found.push(Layer { beam: index, end, length: layer, curvature: error, position: most });
+            sum.errors.result = larger(sum.errors.result, most);
+            sum.records.iter_mut().for_each(|record| *record = larger(*record, most));
             let left = |s: f64| (-(s - end).abs() / layer).exp();
-            let off = |s: f64| off * (1.0 - left(s)) * (1.0 - (s - end).abs() / cell).max(0.0);
+            let off = |s: f64| {
+                let far = |length: f64| (1.0 - (s - end).abs() / length).max(0.0);
+                (1.0 - left(s)) * larger(position * far(cell), shift * far(last))
+            };
             if let Some(along) = sum.beams.get_mut(index) {
                 for ((s, position), bent) in along.s.iter().zip(&mut along.position).zip(&mut along.curvature)
                 {
@@ -97,8 +114,8 @@ pub(in crate::accuracy) fn layers(
             {
                 let left = left(s);
                 (error.x, error.y) = (larger(error.x, off(s)), larger(error.y, off(s)));
-                let slope = if (s - end).abs() < cell { OF_CELL * layer / cell } else { 0.0 };
-                error.angle = larger(error.angle, curvature * layer * left.max(slope));
+                let beside = if (s - end).abs() < cell { beside * (1.0 - left) } else { 0.0 };
+                error.angle = larger(error.angle, larger(turned * left, beside));
                 error.curvature = larger(error.curvature, curvature * left);
             }
         }
@@ -106,17 +123,119 @@ pub(in crate::accuracy) fn layers(
     (!found.is_empty()).then_some((sum, found))
 }
 
-/// Whether neither a support, a joint nor a torsion spring holds the direction of a beam at its end.
-fn turns_freely(model: &Model, beam: usize, end: f64, length: f64) -> bool {
-    let here = |at: &Place| at.beam == beam && (at.s - end).abs() <= super::SAME * length;
+/// An end of a beam as a mesh sees it.
+struct End {
+    /// Its arc length \[m\].
+    s: f64,
+    /// 1 for the start, −1 for the end.
+    side: f64,
+    /// Length of the cell there \[m\].
+    cell: f64,
+    /// EI \[N m²\].
+    stiffness: f64,
+    /// λ \[m\].
+    layer: f64,
+    /// Moment that balances the beam there \[N m\].
+    moment: f64,
+    /// \[1/m\]
+    curvature: f64,
+    /// \[rad\]
+    angle: f64,
+}
+
+/// What a mesh is off by for a layer.
+struct Off {
+    /// Curvature at the end \[1/m\].
+    curvature: f64,
+    /// Direction at the end \[rad\] …
+    turned: f64,
+    /// … and elsewhere within the cell.
+    beside: f64,
+    /// Position within the cell \[m\].
+    position: f64,
+    /// Position of the whole beam, which falls to nothing at its other end \[m\].
+    shift: f64,
+}
+
+impl Off {
+    fn times(self, factor: f64) -> Self {
+        let Self { curvature, turned, beside, position, shift } = self;
+        Self {
+            curvature: factor * curvature,
+            turned: factor * turned,
+            beside: factor * beside,
+            position: factor * position,
+            shift: factor * shift,
+        }
+    }
+}
+
+impl End {
+    /// By how much a mesh is off where a couple of k = `resists` \[N m/rad\] resists a turn of the end; `None` where it does not tell.
+    fn off(&self, shape: &Shape, resists: f64) -> Option<Off> {
+        let Self { side, cell, stiffness, layer, moment, .. } = *self;
+        if resists == 0.0 {
+            let curvature = (self.curvature - moment / stiffness).abs();
+            let position = OF_CELL * curvature * layer * layer;
+            return Some(Off {
+                curvature,
+                turned: curvature * layer,
+                beside: position / cell,
+                position,
+                shift: 0.0,
+            });
+        }
+        let [direction, string] = self.string(shape)?;
+        let angle = if resists.is_finite() {
+            let bends = stiffness / layer;
+            let moments = side * (stiffness * string - moment) + bends * direction + resists * self.angle;
+            moments / (resists + bends)
+        } else {
+            self.angle
+        };
+        let curvature = (self.curvature - string - side * (direction - angle) / layer).abs();
+        let (turned, beside) = ((self.angle - angle).abs(), (direction - angle).abs());
+        let square = layer * layer;
+        let [position, shift] = match resists.is_finite() {
+            true => [OF_CELL * curvature * square, resists * turned * square / stiffness],
+            false => [0.0; 2],
+        };
+        Some(Off { curvature, turned, beside, position, shift })
+    }
+
+    /// The direction \[rad\] and the curvature \[1/m\] that a string would have at the end: those of the chord of the cell and of the middle of
+    /// the next one.
+    fn string(&self, shape: &Shape) -> Option<[f64; 2]> {
+        let Self { s, side, cell, angle, .. } = *self;
+        let at = |values: &[f64], s: f64| interpolated(&shape.s, values, s, true);
+        let next = s + side * cell;
+        let [x, y] = [&shape.x, &shape.y].map(|of| Some(side * (at(of, next)? - at(of, s)?)));
+        let chord = y?.atan2(x?);
+        let curvature = at(&shape.curvature, s + 1.5 * side * cell)?;
+        let turn = chord - side * 0.5 * cell * curvature - angle;
+        Some([angle + turn - TAU * (turn / TAU).round(), curvature])
+    }
+}
+
+/// The stiffness against a turn of a beam at a place \[N m/rad\], infinite where its direction is known; `None` where another part decides
+/// on it.
+fn resistance(model: &Model, beam: usize, end: f64, length: f64) -> Option<f64> {
+    let near = super::SAME * length;
+    let here = |at: &Place| at.beam == beam && (at.s - end).abs() <= near;
     let held = model.supports.iter().any(|s| s.fix.rotation != FixedRotation::Free && here(&s.at));
     let weld = |joint: &&Joint| matches!(joint, Joint::Weld { .. });
     let welded = model.joints.iter().filter(weld).flat_map(Joint::places).any(|at| here(&at));
-    let sprung = model.parts.iter().any(|part| {
-        let load: &dyn Any = part.as_ref();
-        part.couple().is_some_and(|at| here(&at)) && !load.is::<Moment>()
+    // Within a beam, and in a weld, the direction lies between those of two strings, where meshes have it too.
+    if held || welded || (end > near && end < length - near) {
+        return Some(f64::INFINITY);
+    }
+    let couples = model.parts.iter().filter(|part| part.couple().is_some_and(|at| here(&at)));
+    let stiffnesses = couples.map(|part| {
+        let part: &dyn Any = part.as_ref();
+        let spring = part.downcast_ref::<TorsionSpring>().map(|spring| spring.stiffness.unwrap_or(0.0));
+        spring.or(part.is::<Moment>().then_some(0.0))
     });
-    !held && !welded && !sprung
+    stiffnesses.sum()
 }
 
 #[cfg(test)]
@@ -126,12 +245,15 @@ mod tests {
     use super::*;
     use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Run, Shape};
 
-    /// The clamped arm of 2 m and EI = 1 N m² with a last cell of 1 m, pulled by a force N; at its free end the moment is 0.3 N m and the
-    /// curvature 0.1 /m.
+    /// The clamped arm of 2 m and EI = 1 N m² with a first cell of half a metre and a last one of one, pulled by a force N; it lies along
+    /// x, has the curvature 0.1 /m everywhere, and the moment 0.3 N m.
     fn of(tension: f64, more: &str) -> Option<(Difference, Vec<Layer>)> {
         let scene = scene(&format!("static = {{}}\n{more}"));
         let arm = Shape {
             s: vec![0.0, 2.0],
+            x: vec![0.0, 2.0],
+            y: vec![0.0; 2],
+            angle: vec![0.0; 2],
             axial_force: vec![tension; 2],
             bending_moment: vec![0.3; 2],
             curvature: vec![0.1; 2],
@@ -161,8 +283,9 @@ mod tests {
     fn a_free_end_has_the_curvature_of_its_moment() {
         let near =
             |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found} {expected}");
-        let (sum, found) = of(100.0, "").expect("a layer at the free end, and none at the clamp");
-        let [Layer { beam: 0, end: 2.0, length, curvature, position }] = found[..] else {
+        let (sum, found) = of(100.0, "").expect("layers");
+        let [Layer { end: 0.0, .. }, Layer { beam: 0, end: 2.0, length, curvature, position }] = found[..]
+        else {
             panic!("{found:?}")
         };
         near(length, 0.1);
@@ -178,17 +301,52 @@ mod tests {
         let [far, beside, end] = sum.beams[0].curvature[..] else { panic!("three places") };
         near(beside, 0.14 / std::f64::consts::E);
         near(end, 0.14);
-        assert!(far < 1e-6);
+        // A clamp has a layer of its own, in which it bends by 0.25 /m less.
+        near(far, 0.4 * 0.25 * (-5.0_f64).exp());
         assert_eq!((sum.beams[0].position[0], sum.beams[0].position[2]), (0.0, 0.0));
         near(sum.beams[0].position[1], position * (1.0 - (-1.0_f64).exp()) * 0.9);
     }
 
+    /// The string that would be there has the directions −0.025 rad at the start, a quarter of a cell's turn, and 0.05 rad at the end. The
+    /// clamp bends it by 0.1 − 0.025/0.1 at the start. A spring of 10 N m/rad, as stiff as the layer, holds the end half as much, with
+    /// −10 θ = EI κ − 0.3 = 0.1 − (0.05 − θ)/0.1 − 0.3.
     #[test]
-    fn layers_are_at_ends_that_turn_freely_under_tension() {
-        assert!(of(10.0, "").is_some() && of(8.9, "").is_none(), "cells of three λ begin to see it");
+    fn ends_that_are_held_bend_the_string() {
+        let near =
+            |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        let spring = "effect.torsion_spring = [{ beam = 'arm', at = 'end', stiffness = 10 }]";
+        let (sum, found) = of(100.0, spring).expect("layers");
+        let [Layer { end: 0.0, curvature: clamp, .. }, Layer { end: 2.0, curvature, position, .. }] =
+            found[..]
+        else {
+            panic!("{found:?}")
+        };
+        near(clamp, 0.4 * 0.25 / 0.28);
+        let angle = (0.2 + 0.5) / 20.0;
+        let bent = 0.1 - (0.05 - angle) / 0.1;
+        near(-10.0 * angle, bent - 0.3);
+        near(curvature, 0.7 * (bent - 0.1).abs() / 0.28);
+        near(sum.probes[0].samples[0].angle, 0.7 * angle);
+        near(sum.probes[0].samples[0].curvature, 0.7 * (bent - 0.1).abs());
+        near(position, 0.7 * 10.0 * angle / 100.0 / 2.0);
+        near(sum.errors.result, position);
+        near(sum.beams[0].position[0], 0.7 * 10.0 * angle / 100.0 / 2.0 * 0.25 * (1.0 - (-15.0_f64).exp()));
+    }
+
+    #[test]
+    fn layers_are_at_ends_under_tension() {
+        let ends = |tension: f64, more: &str| -> Vec<f64> {
+            of(tension, more)
+                .map_or_else(Vec::new, |(_, found)| found.iter().map(|layer| layer.end).collect())
+        };
+        assert_eq!((ends(10.0, ""), ends(8.9, "")), (vec![2.0], vec![]), "cells of three λ begin to see it");
         assert!(of(-100.0, "").is_none(), "no tension");
-        assert!(of(100.0, "effect.torsion_spring = [{ beam = 'arm', at = 'end', stiffness = 1 }]").is_none());
-        assert!(of(100.0, "effect.moment = [{ beam = 'arm', at = 'end', value = 1 }]").is_some());
+        assert_eq!(ends(100.0, "effect.moment = [{ beam = 'arm', at = 'end', value = 1 }]"), [0.0, 2.0]);
+        // Of a point within the beam the side on which a cell follows the next one tells.
+        assert_eq!(
+            ends(100.0, "effect.force = [{ beam = 'arm', at = 1.0, value = [0, 1] }]"),
+            [0.0, 1.0, 2.0]
+        );
         assert!(of(100.0, "effect.actuation = [{ beam = 'arm', curvature = 1 }]").is_none());
     }
 }

@@ -265,9 +265,11 @@ fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, beam: 
     let (Some(before), Some(after)) = (before, after) else {
         let Some(beside) = before.or(after) else { return seen };
         let strain = if meshfree { larger(seen.strain, beside.strain) } else { seen.strain };
-        let within = s > 0.0 && seen.angle > 0.0;
-        let angle = if within { larger(seen.angle, within_half_a_turn(beside.angle)) } else { seen.angle };
-        return ProbeSample { strain, angle, ..seen };
+        let within = s > 0.0 && fine.s.last().is_some_and(|end| s < *end);
+        let turns = within && seen.angle > 0.0;
+        let angle = if turns { larger(seen.angle, within_half_a_turn(beside.angle)) } else { seen.angle };
+        let curvature = if within { larger(seen.curvature, beside.curvature) } else { seen.curvature };
+        return ProbeSample { strain, angle, curvature, ..seen };
     };
     let at_end = meshfree && fine.s.last().is_some_and(|end| *end <= s);
     let strain = if at_end { before.strain } else { before.strain.min(after.strain) };

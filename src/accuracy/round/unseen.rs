@@ -2,7 +2,9 @@
 //! point, where errors of the first order are beside others that fall faster, or where all meshes err alike.
 
 use super::{Purpose, Round, Runner, coarser, short};
-use crate::accuracy::difference::{self, Difference, Layer, StrainJump, fixed_gradients, is_path};
+use crate::accuracy::difference::{
+    self, Difference, Layer, StrainJump, fixed_gradients, is_path, jumps_of_modes,
+};
 use crate::accuracy::mesh::Mesh;
 use crate::accuracy::saturation::is_uneven;
 use crate::accuracy::setting::{Family, Setting, Solver};
@@ -10,7 +12,7 @@ use crate::basis::Basis;
 use crate::centreline::Curve;
 use crate::model::{Accuracy, Analysis, Discretization, Integrator, Model, Place, StepControl};
 use crate::numeric::plain;
-use crate::results::Results;
+use crate::results::{Event, Results};
 use crate::run::{shapes_at, stiffness_jumps as jumps_of_laws};
 
 /// Part of the wanted error that may be due to strains that jump …
@@ -95,7 +97,9 @@ impl Runner<'_, '_> {
                     // Meshfree shape functions reach over corners, and beside nodes that are close they amplify round-off. Elements have
                     // to be shorter to err by less than those do.
                     let meshfree = matches!(beam.discretization, Discretization::Rpim { .. });
-                    let reach = !corners[index].is_empty() || is_uneven(&named.nodes);
+                    let mut edges = if meshfree { self.model.edges(index) } else { Vec::new() };
+                    edges.retain(|s| *s > 0.0 && *s < named.length());
+                    let reach = !corners[index].is_empty() || !edges.is_empty() || is_uneven(&named.nodes);
                     let dissimilar = self.dissimilar[index] || meshfree && reach;
                     let named = match () {
                         () if dissimilar => named.halved().halved(),
@@ -103,7 +107,7 @@ impl Runner<'_, '_> {
                         () => named.clone(),
                     };
                     let mesh = named.quartered_parts().graded_towards(&self.softer[index]);
-                    let nodes = mesh.and(&corners[index]).places();
+                    let nodes = mesh.and(&corners[index]).and(&edges).places();
                     match self.saturated[index] || dissimilar {
                         true => Family::REDUCED.of(beam, nodes),
                         false => (coarser(&beam.discretization, nodes), beam.gauss_points),
@@ -119,6 +123,43 @@ impl Runner<'_, '_> {
         }
         let difference = self.difference(&finer, results)?;
         Ok(Some(if at_jumps { difference.divided([TOLD_BY_HALF.recip(); 2]) } else { difference }))
+    }
+
+    /// What load factors of changes of stability on a path differ by from those with short cells where the strain of a mode may jump: the
+    /// first motion away from the path at a bifurcation is one. `None` where there is no such change or no such place.
+    pub(super) fn changes_beside_jumps(
+        &mut self,
+        stations: &[Vec<f64>],
+        setting: &Setting,
+        results: &Results,
+        difference: &Difference,
+    ) -> Option<Difference> {
+        let changes = results.states().events.iter().any(|event| matches!(event, Event::Stability { .. }));
+        let jumps: Vec<Vec<f64>> = self
+            .meshes
+            .iter()
+            .enumerate()
+            .map(|(i, mesh)| jumps_of_modes(self.model, i, mesh.length()))
+            .collect();
+        if !changes || !results.run().complete || jumps.iter().all(Vec::is_empty) {
+            return None;
+        }
+        let mut finer = setting.clone();
+        for (index, jumps) in jumps.iter().enumerate().filter(|(_, jumps)| !jumps.is_empty()) {
+            let beam = &self.model.beams[index];
+            let mesh = match &self.named[index] {
+                Some(named) => named.clone().graded_towards(jumps),
+                None => self.meshes[index].halved().graded_towards(jumps),
+            };
+            finer.beams[index] = match &self.named[index] {
+                Some(_) if self.saturated[index] => Family::REDUCED.of(beam, mesh.places()),
+                Some(_) => (coarser(&beam.discretization, mesh.places()), beam.gauss_points),
+                None => self.families[index].of(beam, mesh.places()),
+            };
+        }
+        let finer = self.solve(stations, &finer, Purpose::Shapes).ok().filter(|finer| finer.run().complete);
+        let beside = finer.and_then(|finer| self.difference(&finer, results).ok());
+        Some(difference.with_events_alone(beside.map(|beside| beside.events)))
     }
 
     /// What the results of a `setting` with steps of a given length differ by from those with steps that follow the motion, where there
@@ -330,5 +371,5 @@ pub(super) fn has_points(model: &Model, beam: usize, named: &Mesh) -> bool {
     }
     let near = AT_NODE * length / own.len() as f64;
     let within = |s: &f64| own.iter().all(|node| (node - s).abs() > near);
-    named.nodes.iter().any(within)
+    named.nodes.iter().any(within) || model.edges(beam).iter().any(within)
 }
