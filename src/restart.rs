@@ -17,7 +17,7 @@
 //! A checksum tells whether the file is as it was written.
 
 use crate::assembly::InternalVariables;
-use crate::model::{Along, Beam, Displacement, Integrator, Model};
+use crate::model::{Along, Beam, Displacement, Entering, Integrator, Model};
 use crate::solve::dynamics::{Checkpoint, State};
 use crate::solve::resume::Holding;
 use crate::system::{System, turning};
@@ -227,12 +227,20 @@ fn checksums<T: std::fmt::Debug>(all: &[T]) -> Vec<String> {
     all.iter().map(|one| sha256(format!("{one:?}").as_bytes())).collect()
 }
 
-/// Checksums of all that makes rows of constraints, in the order of [`System::forces_of_rows`].
-fn rows(model: &Model, system: &System) -> Vec<String> {
-    let tendons = system.parts_of_tendons().map(|part| &model.parts[part]);
-    let mut rows = [checksums(&model.supports), checksums(&model.joints), vec!["lengths".into()]].concat();
-    rows.extend(checksums(&tendons.collect::<Vec<_>>()));
-    rows
+/// The checksums of a list without those of what is entering, which is nothing that was there before.
+fn going_on<T: std::fmt::Debug>(all: &[T], entering: &[usize]) -> Vec<String> {
+    let mut checksums = checksums(all);
+    entering.iter().for_each(|i| checksums[*i].clear());
+    checksums
+}
+
+/// Checksums of all that makes rows of constraints, in the order of [`System::forces_of_rows`], those of what is `entering` left empty.
+fn rows(model: &Model, system: &System, entering: &Entering) -> Vec<String> {
+    let Entering { supports, joints, parts } = entering;
+    let of_parts = going_on(&model.parts, parts);
+    let tendons = system.parts_of_tendons().map(|part| of_parts[part].clone());
+    let held = [going_on(&model.supports, supports), going_on(&model.joints, joints)].concat();
+    held.into_iter().chain(["lengths".into()]).chain(tendons).collect()
 }
 
 /// Per entry of `now`, the index of the same entry of `before`, each of which is found once.
@@ -303,7 +311,9 @@ impl SavedState {
             checkpoint,
             holding: holding.map(|Holding { supports, multipliers }| {
                 let supports = supports.into_iter().enumerate().filter(|(_, force)| *force != 0.0);
-                let rows = rows(model, system).into_iter().zip(system.forces_of_rows(&multipliers));
+                let rows = rows(model, system, &Entering::default())
+                    .into_iter()
+                    .zip(system.forces_of_rows(&multipliers));
                 let rows = rows.filter(|(_, forces)| !forces.is_empty());
                 SavedHolding { supports: supports.collect(), rows: rows.collect() }
             }),
@@ -320,7 +330,7 @@ impl SavedState {
             *supports.get_mut(*coordinate)? = *force;
         }
         let names: Vec<String> = before.iter().map(|(name, _)| name.clone()).collect();
-        let same = matches(&names, &rows(model, system)).into_iter();
+        let same = matches(&names, &rows(model, system, &model.entering)).into_iter();
         let forces = same.map(|there| there.map(|there| &before[there].1[..]));
         Some(Holding { supports, multipliers: system.multipliers_of(forces) })
     }
@@ -338,8 +348,9 @@ impl SavedState {
             same.filter_map(|(i, there)| there.map(|_| i)).collect::<Vec<_>>()
         };
         let mut model = model.clone();
-        model.standing = Some(found(&self.saved.acted, &checksums(&model.parts)));
-        for i in found(&self.saved.held, &checksums(&model.supports)) {
+        let Entering { supports, parts, .. } = model.entering.clone();
+        model.standing = Some(found(&self.saved.acted, &going_on(&model.parts, &parts)));
+        for i in found(&self.saved.held, &going_on(&model.supports, &supports)) {
             let support = &mut model.supports[i];
             if support.law.is_none() {
                 support.displacement = Displacement::default();
@@ -351,7 +362,7 @@ impl SavedState {
     /// Per part of a model, the one before whose internal variables it goes on with: the same part, or else one with
     /// other coefficients at the same place.
     fn with_the_history_of(&self, model: &Model) -> Vec<Option<usize>> {
-        let mut same = matches(&self.saved.acted, &checksums(&model.parts));
+        let mut same = matches(&self.saved.acted, &going_on(&model.parts, &model.entering.parts));
         let mut before = self.saved.remembered.clone();
         let mut now = remembered(model);
         for (part, there) in same.iter().enumerate().filter_map(|(part, there)| Some((part, (*there)?))) {

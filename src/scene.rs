@@ -266,7 +266,8 @@ fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
     let mut stages = Vec::new();
     for (index, stage) in to_stages::stages(&file)?.into_iter().enumerate() {
         let (model, analysis) = to_model::convert(&stage.scene, index > 0)?;
-        let model = Model { numbers: stage.numbers, ..model };
+        let entering = stage.entering(&model);
+        let model = Model { numbers: stage.numbers, entering, ..model };
         stages.push(Stage { name: stage.name, model, analysis });
     }
     to_stages::finish(&file, &mut stages)?;

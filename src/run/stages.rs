@@ -28,8 +28,10 @@ pub fn model_of_stage(stages: &[Stage], index: usize) -> (Model, &Analysis) {
         model.standing = Some(Vec::new());
         // Supports that move by no law hold a motion where it is.
         let moves = matches!(analysis, Analysis::Dynamic(_));
-        for support in model.supports.iter_mut().filter(|support| moves && support.law.is_none()) {
-            if stages[..index].iter().any(|before| before.model.supports.contains(support)) {
+        let begins = &model.entering.supports;
+        for (i, support) in model.supports.iter_mut().enumerate() {
+            let holds = moves && support.law.is_none() && !begins.contains(&i);
+            if holds && stages[..index].iter().any(|before| before.model.supports.contains(support)) {
                 support.displacement = Displacement::default();
             }
         }
@@ -66,9 +68,12 @@ fn fading(part: &Arc<dyn Part>, tensions: &mut impl Iterator<Item = f64>) -> Opt
     }
 }
 
-/// Those parts of `acted` that have gone where `parts` go on, as they fade.
-fn gone(acted: &[Arc<dyn Part>], parts: &[Arc<dyn Part>], tensions: &[f64]) -> Vec<Arc<dyn Part>> {
-    let (mut tensions, mut going_on) = (tensions.iter().copied(), parts.iter().collect::<Vec<_>>());
+/// Those parts of `acted` that have gone where a model goes on, as they fade.
+fn gone(acted: &[Arc<dyn Part>], model: &Model, tensions: &[f64]) -> Vec<Arc<dyn Part>> {
+    let parts = model.parts.iter().enumerate();
+    let mut going_on: Vec<_> =
+        parts.filter(|(i, _)| !model.entering.parts.contains(i)).map(|(_, part)| part).collect();
+    let mut tensions = tensions.iter().copied();
     let of = |part: &Arc<dyn Part>| {
         let fading = fading(part, &mut tensions);
         match going_on.iter().position(|other| *other == part) {
@@ -105,7 +110,7 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
         let time = reached.as_ref().map_or(0.0, SavedState::time);
         // A follower load that has gone would make the equations of vibrations unsymmetric.
         let fades = |part: &Arc<dyn Part>| matches!(analysis, Analysis::Static(_)) || part.tendon().is_some();
-        let gone = gone(acted, &model.parts, &held).into_iter().filter(fades);
+        let gone = gone(acted, model, &held).into_iter().filter(fades);
         let fading: Vec<_> = gone.map(|part| (part, time)).collect();
         let model = if fading.is_empty() {
             Cow::Borrowed(model)

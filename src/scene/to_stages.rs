@@ -5,7 +5,7 @@ use super::error::Fault;
 use super::file::{During, SceneTable, StageTable, Staged};
 use super::to_analysis;
 use super::value::Located;
-use crate::model::{Discretization, Place, Stage};
+use crate::model::{Discretization, Entering, Model, Place, Stage};
 use std::cmp::Ordering;
 
 /// Longest name of a stage \[bytes\]: it names a folder.
@@ -18,6 +18,25 @@ pub(super) struct StageScene {
     pub(super) scene: SceneTable,
     /// The numbers of its supports and joints among those of the whole scene.
     pub(super) numbers: [Vec<usize>; 2],
+    /// For every table of a support, joint or effect, in their order, whether it comes after the state from which the stage starts. Each
+    /// makes one support, joint or part of the model.
+    entering: Vec<bool>,
+}
+
+impl StageScene {
+    /// What is entering, of the `model` that has been made of its scene.
+    pub(super) fn entering(&self, model: &Model) -> Entering {
+        let mut entering = self.entering.iter();
+        let mut next = |count: usize| -> Vec<usize> {
+            let list = entering.by_ref().take(count).enumerate();
+            list.filter(|(_, enters)| **enters).map(|(i, _)| i).collect()
+        };
+        Entering {
+            supports: next(model.supports.len()),
+            joints: next(model.joints.len()),
+            parts: next(model.parts.len()),
+        }
+    }
 }
 
 /// The stages, none where the scene has a single analysis.
@@ -46,6 +65,15 @@ pub(super) fn stages(file: &SceneTable) -> Result<Vec<StageScene>, Fault> {
             let ends = until.and_then(|name| position(name).ok()).unwrap_or(given.len());
             (begins..ends).contains(&index)
         };
+        // Vibrations and critical loads leave a state as it was.
+        let leaves = |stage: &StageTable| {
+            let analysis = stage.analysis.get();
+            analysis.modal.is_none() && analysis.buckling.is_none()
+        };
+        let since = given[..index].iter().rposition(leaves).unwrap_or(0);
+        let enters = |During { stage, .. }: During<'_>| {
+            stage.and_then(|name| position(name).ok()).is_some_and(|begins| begins > since)
+        };
         let numbers = [
             numbers(file.support.iter().map(|table| takes_part(table.during()))),
             numbers(file.joint.iter().map(|table| takes_part(table.during()))),
@@ -58,7 +86,8 @@ pub(super) fn stages(file: &SceneTable) -> Result<Vec<StageScene>, Fault> {
             // A motion that goes on has velocities of its own.
             scene.initial_velocity.clear();
         }
-        StageScene { name: stage.name.get().clone(), scene, numbers }
+        let entering = scene.durings().into_iter().map(enters).collect();
+        StageScene { name: stage.name.get().clone(), scene, numbers, entering }
     };
     Ok(given.iter().enumerate().map(scene).collect())
 }

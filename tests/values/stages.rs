@@ -1209,3 +1209,109 @@ fn probes_of_a_modal_stage_see_its_own_equilibrium() {
         assert!((still - vibrating).abs() < 1e-9, "{still} {vibrating}");
     }
 }
+
+/// A jack that lifts an end by 0.1 m, and another one that does so after it; a force that goes while the same comes, along a path to twice
+/// as much; and a couple that comes after a stage of vibrations: in the same words as what goes they do what they do in others.
+#[test]
+fn what_comes_in_the_words_of_what_goes_is_new() {
+    let scene = |supports: &str, effects: &str, stages: &str| {
+        format!(
+            "beam.a = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }}
+            support = [{{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }}{supports}]
+            probe = [{{ name = 'tip', beam = 'a', at = 'end' }}]
+            {effects}
+            stage = [{stages}]\n"
+        )
+    };
+    let statics = "{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static = {} }";
+    let path =
+        "{ name = 'one', analysis.static = {} }, { name = 'two', analysis.static.arc_length.until_load = 2 }";
+    let modes = "{ name = 'one', analysis.static = {} }, { name = 'modes', analysis.modal = { count = 2 } }, { name = 'two', analysis.static = {} }";
+    let jack = |y: &str, when: &str| {
+        format!(", {{ beam = 'a', at = 'end', fix = ['y'], move = {{ y = {y} }}, {when} }}")
+    };
+    let jacks = |y: &str, stages: &str| {
+        scene(&(jack("0.1", "until = 'two'") + &jack(y, "stage = 'two'")), "", stages)
+    };
+    let load = |kind: &str, first: &str, then: &str, stages: &str| {
+        let one = |value: &str, when: &str| format!("{{ beam = 'a', at = 'end', value = {value}, {when} }}");
+        let both = [one(first, "until = 'two'"), one(then, "stage = 'two'")].join(", ");
+        scene("", &format!("effect.{kind} = [{both}]"), stages)
+    };
+    let tip = |text: &str| {
+        let results = solved(text);
+        *results.last().expect("stages").states().probes[0].samples.last().expect("a state")
+    };
+    for (same, other, beside) in [
+        (jacks("0.1", statics), jacks("0.1000001", statics), 0.1),
+        (jacks("0.1", modes), jacks("0.1000001", modes), 0.1),
+        (load("force", "[0, 1]", "[0, 1]", path), load("force", "[0, 1]", "[0, 1.0000001]", path), 0.15),
+        (load("moment", "1.0", "1.0", modes), load("moment", "1.0", "1.0000001", modes), 0.0),
+    ] {
+        let (found, expected) = (tip(&same), tip(&other));
+        near(found.y, expected.y, 1e-6, &same);
+        near(found.angle, expected.angle, 1e-6, &same);
+        let first = solved(&same)[0].states().probes[0].samples.last().expect("a state").y;
+        assert!((found.y - first).abs() >= beside, "{} after {first}\n{same}", found.y);
+    }
+    // What is there all the time is the same, however many of the same words come and go beside it.
+    let two = "effect.force = [{ beam = 'a', at = 'end', value = [0, 1] }, { beam = 'a', at = 'end', value = [0, 1], stage = 'two' }]";
+    let results = solved(&scene("", two, path));
+    let standing = solved(&scene("", "effect.force = [{ beam = 'a', at = 'end', value = [0, 3] }]", statics));
+    near(
+        results[1].states().probes[0].samples.last().expect("a state").y,
+        standing[0].states().probes[0].samples.last().expect("a state").y,
+        1e-7,
+        two,
+    );
+}
+
+/// Of every kind of table one is there from the start and another one comes in the second stage: without what is entering, that has
+/// what the first has.
+#[test]
+fn what_is_entering_is_told_from_what_was_there() {
+    let kinds = [
+        ("force", "at = 0.5, value = [0, V]"),
+        ("moment", "at = 0.5, value = V"),
+        ("distributed_force", "value = [0, V]"),
+        ("damping", "mass_proportional = V"),
+        ("spring", "at = 0.5, stiffness = V"),
+        ("torsion_spring", "at = 0.5, stiffness = V"),
+        ("point_mass", "at = 0.5, mass = V"),
+        ("rotary_inertia", "per_length = V"),
+        ("foundation", "stiffness = [0, V]"),
+        ("actuation", "curvature = V"),
+        ("tendon", "offset = 0, tension = V"),
+        ("drag", "normal = V"),
+        ("buoyancy", "displaced_mass_per_length = V"),
+        ("electrostatic", "voltage = V, electrode = { point = [0, -1], normal = [0, 1] }, width = 0.01"),
+        ("force_field", "potential = 'V*x'"),
+        ("moving_force", "value = [0, V], speed = 1"),
+        ("contact", "half_plane = { point = [0, -2], normal = [0, 1] }, stiffness = V"),
+    ];
+    let table = |(kind, keys): (&str, &str)| {
+        let one = |value: &str, when: &str| format!("{{ beam = 'a', {}{when} }}", keys.replace('V', value));
+        format!("{kind} = [{}, {}]\n", one("2.0", ""), one("3.0", ", stage = 'two'"))
+    };
+    let effects: String = kinds.into_iter().map(table).collect();
+    let text = format!(
+        "beam.a = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }}
+        beam.b = {{ start = [1, 0], end = [2, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }}
+        support = [{{ beam = 'b', at = 'end', fix = ['x'], stage = 'two' }}, {{ beam = 'a', at = 'start', fix = ['x', 'y', 'angle'] }}]
+        joint = [{{ type = 'hinge', first = {{ beam = 'a', at = 'end' }}, second = {{ beam = 'b', at = 'start' }} }}, \
+            {{ type = 'weld', first = {{ beam = 'a', at = 0.5 }}, second = {{ beam = 'b', at = 0.5 }}, stage = 'two' }}]
+        stage = [{{ name = 'one', analysis.dynamic.duration = 1 }}, {{ name = 'two', analysis.dynamic.duration = 1 }}]
+        [effect]\ngravity.acceleration = [0, -9.81]\n{effects}"
+    );
+    let scene = scene(&text);
+    let [one, two] = [0, 1].map(|index| &scene.stages()[index].model);
+    let old =
+        |count: usize, entering: &[usize]| (0..count).filter(|i| !entering.contains(i)).collect::<Vec<_>>();
+    assert!(one.entering == ancf::model::Entering::default());
+    assert_eq!((one.parts.len(), two.entering.parts.len()), (kinds.len() + 1, kinds.len()));
+    for (part, i) in one.parts.iter().zip(old(two.parts.len(), &two.entering.parts)) {
+        assert_eq!(format!("{part:?}"), format!("{:?}", two.parts[i]));
+    }
+    assert_eq!((&two.entering.supports[..], &two.entering.joints[..]), (&[0][..], &[1][..]));
+    assert_eq!((&one.supports[0], &one.joints[0]), (&two.supports[1], &two.joints[0]));
+}
