@@ -175,7 +175,9 @@ fn probes(a: &Seen, b: &Seen, pairs: &[(usize, usize)], gap: &mut Gap) {
         for &(i, j) in pairs {
             let (Some(p), Some(q)) = (p.get(i), q.get(j)) else { continue };
             gap.place("position of a probe", apart(p.place, q.place));
-            gap.note("angle at a probe", (p.angle - q.angle).abs(), 1.0);
+            // Where nothing resists a turn, a state without loads has any direction; and one of half a turn has two.
+            let turned = (p.angle - q.angle).abs().min((p.direction - q.direction).abs());
+            gap.note("angle at a probe", turned, 1.0);
             gap.note("curvature at a probe", (p.curvature - q.curvature).abs(), curvature);
             gap.note("strain at a probe", (p.strain - q.strain).abs(), strain);
             gap.note("velocity of a probe", apart(p.velocity, q.velocity), velocity);

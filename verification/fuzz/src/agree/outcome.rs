@@ -7,7 +7,7 @@ use std::panic::{self, AssertUnwindSafe};
 use ancf::accuracy;
 use ancf::model::{Beam, Discretization};
 use ancf::restart::SavedState;
-use ancf::results::{ProbeSample, Results, Shape};
+use ancf::results::{Event, ProbeSample, Results, Shape};
 use ancf::run::{self, Control, RunError, StagesRun};
 use ancf::scene;
 use toml::Table;
@@ -59,8 +59,10 @@ pub struct Seen {
     pub effects: ([f64; 2], f64),
     /// Frequencies or critical load factors.
     pub eigenvalues: Vec<f64>,
-    /// Times of events.
+    /// Times or load factors of events …
     pub events: Vec<f64>,
+    /// … and their errors, where a run tells them.
+    pub event_errors: Vec<f64>,
     /// Steps, rejected steps, iterations.
     pub counts: [usize; 3],
     pub saved: Option<SavedState>,
@@ -87,8 +89,10 @@ impl Seen {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sample {
     pub place: [f64; 2],
-    /// Turn since the first record.
+    /// Turn since the first record …
     pub angle: f64,
+    /// … and with the direction there, which lies within half a turn.
+    pub direction: f64,
     pub curvature: f64,
     pub strain: f64,
     pub velocity: [f64; 2],
@@ -238,6 +242,8 @@ fn see(results: &Results, frame: &Frame) -> Seen {
     }
     let rate = frame.unit([0, 0, -1]);
     let unit = if t.run.analysis == ancf::results::AnalysisKind::Modal { rate } else { 1.0 };
+    let told = t.run.error.as_ref();
+    let events: Vec<_> = t.events.iter().enumerate().filter(|(_, event)| has_time(event)).collect();
     Seen {
         moves: t.run.analysis == ancf::results::AnalysisKind::Dynamic,
         before: Vec::new(),
@@ -249,7 +255,11 @@ fn see(results: &Results, frame: &Frame) -> Seen {
         reactions: reactions.collect(),
         effects: sum,
         eigenvalues: results.eigenvalues().iter().map(|value| value / unit).collect(),
-        events: t.events.iter().map(|event| event.time() / time).collect(),
+        events: events.iter().map(|(_, event)| event.parameter() / time).collect(),
+        event_errors: events
+            .iter()
+            .filter_map(|(i, _)| Some(told?.events.get(*i)?.parameter / time))
+            .collect(),
         counts: [t.run.statistics.steps, t.run.statistics.rejected_steps, t.run.statistics.newton_iterations],
         saved: t.saved.clone(),
         estimated: t.run.error.as_ref().map(|error| match error.records.last() {
@@ -259,12 +269,22 @@ fn see(results: &Results, frame: &Frame) -> Seen {
     }
 }
 
+/// Whether an event has a time that more than round-off decides on: not so a turn of a strain that is zero but for the errors of a mesh, as at
+/// a free end.
+fn has_time(event: &Event) -> bool {
+    const NOTHING: f64 = 1e-9;
+    !matches!(event, Event::Probe { quantity: "strain", turns: Some(_), value, .. } if value.abs() < NOTHING)
+}
+
 fn samples(samples: &[ProbeSample], frame: &Frame) -> Vec<Sample> {
     let (length, velocity) = (frame.unit([1, 0, 0]), frame.unit([1, 0, -1]));
     let first = samples.first().map_or(0.0, |s| s.angle);
+    let (sine, cosine) = first.sin_cos();
+    let [x, y] = frame.back([cosine, sine]);
     let natural = samples.iter().map(|s| Sample {
         place: frame.point_back([s.x, s.y]),
         angle: frame.sign() * (s.angle - first),
+        direction: y.atan2(x) + frame.sign() * (s.angle - first),
         curvature: frame.sign() * s.curvature * length,
         strain: s.strain,
         velocity: frame.back([s.vx.unwrap_or(0.0) / velocity, s.vy.unwrap_or(0.0) / velocity]),

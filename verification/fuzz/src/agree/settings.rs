@@ -43,7 +43,7 @@ pub fn analyses_mut(scene: &mut Table) -> Vec<&mut Table> {
 }
 
 /// The tables of a list.
-pub fn items<'t>(scene: &'t Table, path: &[&str]) -> impl Iterator<Item = &'t Table> {
+pub fn items<'t>(scene: &'t Table, path: &[&str]) -> impl Iterator<Item = &'t Table> + use<'t> {
     let list = get(scene, path).and_then(Value::as_array);
     list.into_iter().flatten().filter_map(Value::as_table)
 }
