@@ -71,7 +71,7 @@ pub(crate) use integral::{add_tiles, multiply_rows};
 pub use kind::Kind;
 pub use load::{Acting, ActingLoad, Amplitude, remaining};
 pub use node::{Node, nodes};
-pub use part::{Extent, Imposed, Part, Resistance, jumps_along};
+pub use part::{Extent, Imposed, Part, Resistance, edges_along};
 pub use tendon::TendonPath;
 pub use terms::{Needs, Owner, Owners, Terms, Turning};
 pub use timed::{TimedDensity, TimedIntegral, TimedLoad};

@@ -229,9 +229,8 @@ fn checksums<T: std::fmt::Debug>(all: &[T]) -> Vec<String> {
 
 /// The checksums of a list without those of what is entering, which is nothing that was there before.
 fn going_on<T: std::fmt::Debug>(all: &[T], entering: &[usize]) -> Vec<String> {
-    let mut checksums = checksums(all);
-    entering.iter().for_each(|i| checksums[*i].clear());
-    checksums
+    let of = |(i, checksum): (usize, String)| if entering.contains(&i) { String::new() } else { checksum };
+    checksums(all).into_iter().enumerate().map(of).collect()
 }
 
 /// Checksums of all that makes rows of constraints, in the order of [`System::forces_of_rows`], those of what is `entering` left empty.

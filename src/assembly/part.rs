@@ -86,7 +86,7 @@ pub trait Part: Any + fmt::Debug + Send + Sync {
 }
 
 /// The places of beam `beam` at which quantities along it jump, or their slopes do so much that it matters.
-pub fn jumps_along<'q>(beam: usize, quantities: impl IntoIterator<Item = &'q Along>) -> Vec<Place> {
+pub fn edges_along<'q>(beam: usize, quantities: impl IntoIterator<Item = &'q Along>) -> Vec<Place> {
     let places = quantities.into_iter().flat_map(|quantity| quantity.edges());
     places.map(|s| Place::new(beam, s)).collect()
 }

@@ -11,7 +11,7 @@
 
 use super::{Engineering, Green, Strain, bend};
 use crate::assembly::{
-    Assembly, BuildError, Density, Extent, Gradient, Hessian, Imposed, Kind, Part, jumps_along,
+    Assembly, BuildError, Density, Extent, Gradient, Hessian, Imposed, Kind, Part, edges_along,
 };
 use crate::basis::Quadrature;
 use crate::beam::{Along, Place, Section, StrainMeasure};
@@ -84,7 +84,7 @@ impl Part for Actuation {
     }
 
     fn jumps(&self) -> Vec<Place> {
-        jumps_along(self.beam, self.strain.iter().chain(&self.curvature))
+        edges_along(self.beam, self.strain.iter().chain(&self.curvature))
     }
 }
 

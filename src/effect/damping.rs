@@ -6,7 +6,7 @@
 
 use super::{CouplingDamping, Engineering, Green, Strain, bend};
 use crate::assembly::{
-    Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part, jumps_along,
+    Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part, edges_along,
 };
 use crate::beam::{Along, Place, StrainMeasure};
 use crate::lanes::{Lanes, Pair, Real, dot};
@@ -205,6 +205,6 @@ impl Part for BeamDamping {
     }
 
     fn edges(&self) -> Vec<Place> {
-        jumps_along(self.beam, [&self.mass_proportional, &self.strain, &self.curvature].into_iter().flatten())
+        edges_along(self.beam, [&self.mass_proportional, &self.strain, &self.curvature].into_iter().flatten())
     }
 }

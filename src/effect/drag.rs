@@ -2,7 +2,7 @@
 
 use super::DeadForce;
 use crate::assembly::{
-    Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part, jumps_along,
+    Assembly, BuildError, Density, Dissipation, Extent, Gradient, Hessian, Kind, Part, edges_along,
 };
 use crate::basis::Quadrature;
 use crate::beam::{Along, Place};
@@ -46,7 +46,7 @@ impl Part for Drag {
     }
 
     fn edges(&self) -> Vec<Place> {
-        jumps_along(self.beam, self.viscous.iter().chain(&self.quadratic))
+        edges_along(self.beam, self.viscous.iter().chain(&self.quadratic))
     }
 }
 
@@ -202,6 +202,6 @@ impl Part for Buoyancy {
     }
 
     fn edges(&self) -> Vec<Place> {
-        jumps_along(self.beam, [&self.displaced])
+        edges_along(self.beam, [&self.displaced])
     }
 }

@@ -1,7 +1,7 @@
 //! Attraction by a flat electrode.
 
 use crate::assembly::{
-    Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, jumps_along,
+    Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, edges_along,
 };
 use crate::beam::{Along, Place};
 use crate::law::Law;
@@ -72,7 +72,7 @@ impl Part for Electrostatic {
     }
 
     fn edges(&self) -> Vec<Place> {
-        jumps_along(self.beam, [&self.facing])
+        edges_along(self.beam, [&self.facing])
     }
 }
 

@@ -7,7 +7,7 @@
 
 use crate::assembly::{
     Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, Resistance,
-    TimedDensity, jumps_along,
+    TimedDensity, edges_along,
 };
 use crate::beam::{Along, Place};
 use crate::law::Law;
@@ -136,7 +136,7 @@ impl Part for ForceField {
     }
 
     fn edges(&self) -> Vec<Place> {
-        jumps_along(self.beam, [&self.acting])
+        edges_along(self.beam, [&self.acting])
     }
 }
 

@@ -1,7 +1,7 @@
 //! Forces, concentrated (a table of one point with weight 1) or distributed (a table of the whole
 //! beam).
 
-use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part, jumps_along};
+use crate::assembly::{Assembly, BuildError, Density, Extent, Gradient, Hessian, Kind, Part, edges_along};
 use crate::beam::{Along, Place};
 use crate::lanes::{Lanes, Pair, Points, Real};
 use crate::law::Law;
@@ -90,7 +90,7 @@ impl Part for DistributedForce {
     }
 
     fn edges(&self) -> Vec<Place> {
-        jumps_along(self.beam, &self.value)
+        edges_along(self.beam, &self.value)
     }
 }
 

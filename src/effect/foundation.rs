@@ -1,7 +1,7 @@
 //! Elastic foundation along a beam.
 
 use super::spring::GroundSpring;
-use crate::assembly::{Assembly, BuildError, Extent, Kind, Part, Resistance, jumps_along};
+use crate::assembly::{Assembly, BuildError, Extent, Kind, Part, Resistance, edges_along};
 use crate::beam::{Along, Place};
 use nalgebra::Vector2;
 
@@ -39,6 +39,6 @@ impl Part for Foundation {
     }
 
     fn edges(&self) -> Vec<Place> {
-        jumps_along(self.beam, &self.stiffness)
+        edges_along(self.beam, &self.stiffness)
     }
 }

@@ -15,7 +15,7 @@
 use super::Inertia;
 use super::direction;
 use crate::assembly::{
-    Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part, jumps_along,
+    Assembly, BuildError, Dissipation, Extent, Gradient, Hessian, Kind, Part, edges_along,
 };
 use crate::beam::{Along, Place};
 use crate::lanes::{Lanes, Pair, Real, cross, dot};
@@ -76,7 +76,7 @@ impl Part for SectionInertia {
     }
 
     fn edges(&self) -> Vec<Place> {
-        jumps_along(self.beam, [&self.per_length])
+        edges_along(self.beam, [&self.per_length])
     }
 }
 

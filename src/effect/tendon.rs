@@ -3,7 +3,7 @@
 use super::{Engineering, PreStrain, Strain, bend};
 use crate::assembly::{
     Assembly, BuildError, CompiledFor, Density, Extent, Gradient, Hessian, Kind, Part, TendonPath,
-    jumps_along,
+    edges_along,
 };
 use crate::beam::{Along, Place};
 use crate::lanes;
@@ -91,7 +91,7 @@ impl Part for Tendon {
     fn jumps(&self) -> Vec<Place> {
         let [from, to] = self.path.ends;
         let within = |at: &Place| from < at.s && at.s < to;
-        let mut places = jumps_along(self.beam, [&self.path.offset]);
+        let mut places = edges_along(self.beam, [&self.path.offset]);
         places.retain(within);
         places.extend(self.path.ends.iter().map(|s| Place::new(self.beam, *s)));
         places
