@@ -102,12 +102,12 @@ impl Mesh {
                 }
             }
             fixed.push(length);
-            let straight = ((times * FIRST.max(OF_HALF_WAVE * waves as f64)).max(FIRST) * length / longest)
-                .ceil() as usize;
-            let turns = (turning(curve) / TURN).ceil() as usize;
+            let straight =
+                number((times * FIRST.max(OF_HALF_WAVE * waves as f64)).max(FIRST) * length / longest);
+            let turns = number(turning(curve) / TURN);
             let cells = straight.max(turns).max(LEAST);
             let spread = |part: &[f64]| {
-                let share = (cells as f64 * (part[1] - part[0]) / length).ceil() as usize;
+                let share = number(cells as f64 * (part[1] - part[0]) / length);
                 if share <= LEAST {
                     return graded(&model.beams[beam].section, [part[0], part[1]]);
                 }
@@ -269,7 +269,7 @@ impl Mesh {
     /// what is given. There is an even number more of them on either side, so that every second node makes a mesh still.
     pub fn graded_down_to(mut self, s: f64, length: f64) -> Self {
         for end in self.beside(s) {
-            let halvings = (end.length / length).log2().ceil().max(0.0) as i32;
+            let halvings = number((end.length / length).log2()) as i32;
             let halvings = if halvings > 2 { halvings - halvings % 2 } else { halvings + halvings % 2 };
             self.nodes.extend((1..=halvings).map(|k| s + 0.5_f64.powi(k) * end.length.copysign(end.side)));
         }
@@ -345,19 +345,20 @@ impl Mesh {
                 .filter(|(_, cell)| cell[0] >= part[0] && cell[0] < part[1])
                 .collect();
             let total: f64 = inside.iter().map(|(i, cell)| densities[*i] * (cell[1] - cell[0])).sum();
-            let cells = ((total / per_cell).ceil() as usize).max(LEAST);
+            let cells = number(total / per_cell).max(LEAST);
             if largest <= EVEN * smallest {
                 nodes.extend(even(part[0], part[1], cells));
                 continue;
             }
+            let densest = inside.iter().map(|(i, _)| densities[*i]).fold(0.0, f64::max);
+            let smallest = total / cells as f64 / densest;
             let (mut sum, mut next) = (0.0, 0);
             for (i, cell) in inside {
                 let step = densities[i] * (cell[1] - cell[0]);
                 while next < cells && next as f64 * total / cells as f64 <= sum + step {
                     let share = (next as f64 * total / cells as f64 - sum) / step;
-                    let width = total / cells as f64 / densities[i];
-                    let s = rounded(cell[0] + share.max(0.0) * (cell[1] - cell[0]), width);
-                    nodes.push(if next == 0 { part[0] } else { s });
+                    let s = cell[0] + share.max(0.0) * (cell[1] - cell[0]);
+                    nodes.push(if next == 0 { part[0] } else { rounded(s, smallest, [part[0], part[1]]) });
                     next += 1;
                 }
                 sum += step;
@@ -439,11 +440,28 @@ pub(super) fn refinement(before: &[Mesh], errors: &[CellErrors], now: &[Mesh]) -
     if weights > 0.0 { (sum / weights).exp2() } else { 1.0 }
 }
 
-/// A place to a thousandth of the cells there: nobody wants to read more digits.
-fn rounded(s: f64, cell: f64) -> f64 {
-    let digits = 3.0 - cell.log10().floor();
-    let decimals = digits.clamp(0.0, 300.0) as usize;
-    format!("{s:.decimals$}").parse().unwrap_or(s)
+/// A place between two that must be nodes, to a thousandth of a cell: nobody wants to read more digits. What is rounded
+/// is the distance from the nearer one, so that meshes of mirror images are mirror images: a perfect structure on another
+/// mesh is not perfect, and chance would choose the side to which it buckles.
+fn rounded(s: f64, cell: f64, [from, to]: [f64; 2]) -> f64 {
+    let decimals = |cell: f64| (3.0 - cell.log10().floor()).clamp(0.0, 300.0) as usize;
+    let to_decimals = |s: f64, decimals: usize| format!("{s:.decimals$}").parse().unwrap_or(s);
+    let distance = |d: f64| to_decimals(d, decimals(cell));
+    let middle = 0.5 * (from + to);
+    let place = if distance((s - middle).abs()) == 0.0 {
+        middle
+    } else if s < middle {
+        from + distance(s - from)
+    } else {
+        to - distance(to - s)
+    };
+    // Sums have digits of round-off.
+    to_decimals(place, decimals(SAME * cell))
+}
+
+/// The least whole number that is not smaller than `x` but for round-off, which differs between mirror images.
+fn number(x: f64) -> usize {
+    (x * (1.0 - SAME)).ceil() as usize
 }
 
 /// The starts of `cells` even cells from `start` to `end`.
@@ -600,9 +618,50 @@ mod tests {
 
     #[test]
     fn places_are_round_numbers_of_their_cells() {
-        assert_eq!(rounded(0.123_456_7, 0.1), 0.1235);
-        assert_eq!(rounded(1.234_567_89e-5, 1e-6), 1.2346e-5);
-        assert_eq!(rounded(123.456_7, 20.0), 123.46);
+        assert_eq!(rounded(0.123_456_7, 0.1, [0.0, 1.0]), 0.1235);
+        assert_eq!(rounded(1.234_567_89e-5, 1e-6, [0.0, 1.0]), 1.2346e-5);
+        assert_eq!(rounded(123.456_7, 20.0, [0.0, 1000.0]), 123.46);
+        // What ends at a place that is not round is so from both ends, and a middle is one.
+        let third = 1.0 / 3.0;
+        let part = [0.1, 0.1 + third];
+        assert_eq!(rounded(0.223_456_7, 0.1, part), 0.2235);
+        assert!((rounded(0.1 + third - 0.123_456_7, 0.1, part) - (0.1 + third - 0.1235)).abs() < 1e-13);
+        assert!((rounded(0.1 + 0.5 * third + 4e-5, 0.1, part) - (0.1 + 0.5 * third)).abs() < 1e-13);
+    }
+
+    /// Of a part whose cells err as their mirror images do, at lengths that are not round; and halves of a beam whose
+    /// shares of the cells are whole but for round-off.
+    #[test]
+    fn meshes_of_mirror_images_are_mirror_images() {
+        let third = 1.0 / 3.0;
+        let spread = |densities: [f64; 6], each: f64, fixed: &[f64]| {
+            let nodes = even(0.0, third, 6).into_iter().chain([third]).collect::<Vec<_>>();
+            mesh(&nodes, fixed).spread(&densities, each).nodes
+        };
+        for cells in 2..40 {
+            let each = third / 6.0 * 22.0 / f64::from(cells);
+            let nodes = spread([9.0, 1.0, 1.0, 1.0, 1.0, 9.0], each, &[0.0, third]);
+            let mirrored: Vec<f64> = nodes.iter().rev().map(|s| third - s).collect();
+            assert_eq!(nodes.len() - 1, cells as usize);
+            assert!(
+                nodes.iter().zip(&mirrored).all(|(a, b)| (a - b).abs() < 1e-11),
+                "{nodes:?} {mirrored:?}"
+            );
+            let one = spread([9.0, 1.0, 1.0, 1.0, 1.0, 3.0], each, &[0.0, third]);
+            let other = spread([3.0, 1.0, 1.0, 1.0, 1.0, 9.0], each, &[0.0, third]);
+            let near = |(a, b): (&f64, &f64)| (a + b - third).abs() < 1e-11;
+            assert!(one.iter().zip(other.iter().rev()).all(near), "{one:?} {other:?}");
+        }
+        // A force at what is nearly the middle: halves of four cells have two each.
+        for middle in [0.5 - 1e-16, 0.5, 0.5 + 2e-16] {
+            let text = format!(
+                "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 1 }}\n\
+                 support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+                 effect.force = [{{ beam = 'arm', at = {middle:?}, value = [1, 0] }}]\nanalysis.static = {{}}\n"
+            );
+            let found = first(&text, 0, 1.0).remove(0).nodes;
+            assert!(found.len() == 5 && found[2] == middle, "{found:?}");
+        }
     }
 
     fn first(text: &str, waves: usize, times: f64) -> Vec<Mesh> {
@@ -713,7 +772,7 @@ mod tests {
         // ∫ d ds is 1, 1/2, 1/4, 1/8 and 0.0747 four times in the old cells, and 0.1812 in each new one.
         let expected = [
             0.0, 0.022_64, 0.045_29, 0.067_93, 0.090_58, 0.113_22, 0.146_73, 0.192_02, 0.2373, 0.315_19,
-            0.4365, 0.6969, 1.0,
+            0.436_52, 0.6969, 1.0,
         ];
         assert_eq!(found.len(), expected.len(), "{found:?}");
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");

@@ -1010,3 +1010,25 @@ fn layers_at_points_within_a_beam_are_told() {
     let truth = (found.angle - angle).abs();
     assert!(truth <= 2.0 * errors.angle && errors.angle <= 10.0 * truth, "{truth:e} {errors:?}");
 }
+
+/// A hinged arch of 2.8 rad under a force at its crown, which is pressed down to a tenth of its rise. It loses stability
+/// against swaying at a load factor of 0.69470, but a perfect arch goes on along its symmetric path. Meshes that are
+/// not symmetric would make another structure of it, which sways to a side that chance decides.
+#[test]
+fn a_perfect_arch_remains_symmetric_on_any_mesh() {
+    let half = 1.420_671_148_812_831_2;
+    for wanted in [1e-3, 1e-5] {
+        let results = run(&scene(&format!(
+            "beam.arch = {{ arc = {{ center = [1.0, -0.17247672583180007], radius = 1.0147651062948795, \
+             from = 2.9707963267948965, to = 0.17079632679489665 }}, axial_stiffness = 1e5, bending_stiffness = 1, \
+             strain = 'engineering' }}\n\
+             support = [{{ beam = 'arch', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'arch', at = 'end', fix = ['x', 'y'] }}]\n\
+             effect.force = [{{ beam = 'arch', at = {half:?}, value = [0, -10.59377] }}]\n\
+             probe = [{{ name = 'crown', beam = 'arch', at = {half:?} }}]\n\
+             analysis.static = {{ accuracy = {wanted:?}, arc_length = {{ max_step = 0.02, \
+             until_probe = {{ probe = 'crown', y = 0.21057209511576985 }} }} }}\n"
+        )));
+        let crown = last(&results);
+        assert!((crown.x - 1.0).abs() < 1e-9, "{wanted:?}: {}", crown.x);
+    }
+}
