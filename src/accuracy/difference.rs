@@ -6,6 +6,7 @@ mod kinks;
 mod laid_out;
 mod layers;
 mod modes;
+mod negligible;
 mod places;
 mod section_forces;
 mod states;

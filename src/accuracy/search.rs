@@ -490,6 +490,9 @@ impl<'a, 'o> Search<'a, 'o> {
             estimate.probes = probes.into_iter().map(statement::of_probe).collect();
             let events = statement::of_events(events, self.runner.model, results.states(), &estimate.probes);
             estimate = ErrorEstimate { estimated: errors, eigenvalues, events, records, beams, ..estimate };
+            estimate
+                .notes
+                .extend(self.runner.wanted.into_iter().flat_map(|wanted| of_nothing(wanted, errors)));
             estimate.met = self.runner.wanted.is_none_or(|wanted| excess(estimate.estimated, wanted) <= 1.0);
         }
         if let Some(wanted) = self.runner.wanted
@@ -503,6 +506,18 @@ impl<'a, 'o> Search<'a, 'o> {
         results.run_mut().error = Some(Box::new(estimate));
         Accurate { results, chosen, corners }
     }
+}
+
+/// What is said where an error is wanted of something that is nowhere more than round-off.
+fn of_nothing(wanted: Accuracy, errors: Errors) -> impl Iterator<Item = String> {
+    let kinds = [
+        ("curvature", wanted.curvature, errors.curvature),
+        ("section force", wanted.section_force, errors.section_force),
+    ];
+    let of_nothing = kinds.into_iter().filter(|(_, wanted, error)| wanted.is_some() && error.is_none());
+    of_nothing.map(|(what, ..)| {
+        format!("no {what} is larger than what round-off makes of none: nothing is said of its error")
+    })
 }
 
 /// How many times as many cells make these errors half of those that are wanted, where errors of the

@@ -1032,3 +1032,42 @@ fn a_perfect_arch_remains_symmetric_on_any_mesh() {
         assert!((crown.x - 1.0).abs() < 1e-9, "{wanted:?}: {}", crown.x);
     }
 }
+
+/// A string with a bending stiffness under its own weight, clamped at both ends: the clamps take the moment q d (L/2 − d)
+/// where bending fades over d = √(EI (1 + ε)/T), which is 1/2190 of the length here. Small against the tension times the
+/// length, and far above round-off; where section forces are wanted this moment is theirs.
+#[test]
+fn moments_of_taut_strings_are_as_accurate_as_wanted() {
+    let (length, tension, bending, axial, weight) = (1e-3, 1e-4, 2.083e-17_f64, 0.025, 3e-10 * 9.81);
+    let results = run(&scene(&format!(
+        "beam.string = {{ start = [0, 0], end = [{length:?}, 0], axial_stiffness = {axial:?}, bending_stiffness = {bending:?}, \
+         mass_per_length = 3e-10 }}\n\
+         support = [{{ beam = 'string', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'string', at = 'end', fix = ['y', 'angle'] }}]\n\
+         effect.force = [{{ beam = 'string', at = 'end', value = [{tension:?}, 0] }}]\n\
+         effect.gravity.acceleration = [0, -9.81]\n\
+         analysis.static.accuracy = {{ position = 1e-4, section_force = 1e-2 }}\n\
+         output.reactions = true\n"
+    )));
+    let layer = (bending * (1.0 + tension / axial) / tension).sqrt();
+    let truth = weight * layer * (length / 2.0 - layer);
+    let found = results.states().last[0].bending_moment[0].abs();
+    assert!((found / truth - 1.0).abs() < 1e-2, "{found:e} instead of {truth:e}");
+    let told = error(&results).estimated.section_force.expect("there are forces");
+    assert!(told <= 1e-2, "{told:e}");
+}
+
+/// A straight bar has no moments, at any place and in any direction, but for round-off: whoever wants them accurate gets
+/// an answer that says so.
+#[test]
+fn nothing_is_said_of_moments_and_curvatures_that_are_round_off() {
+    let results = run(&scene(
+        "beam.bar = { start = [3.1, 1.7], end = [3.7, 2.5], axial_stiffness = 1e3, bending_stiffness = 1 }\n\
+         support = [{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+         effect.force = [{ beam = 'bar', at = 'end', value = [0.6, 0.8] }]\n\
+         analysis.static.accuracy = { position = 1e-5, section_force = 1e-3, curvature = 1e-3 }\n",
+    ));
+    let found = error(&results);
+    assert!(found.met && found.estimated.curvature.is_none(), "{found:?}");
+    assert!(found.notes.iter().any(|note| note.contains("no curvature")), "{:?}", found.notes);
+    assert!(found.estimated.section_force.is_some_and(|told| told < 1e-9), "{found:?}");
+}

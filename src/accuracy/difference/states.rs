@@ -1,6 +1,7 @@
 //! By how much equilibria and motions differ.
 
 use super::events::events;
+use super::negligible::Negligible;
 use super::places::{interpolated, is_before, is_twice, same_place};
 use super::section_forces::section_forces;
 use super::stations::parts;
@@ -10,11 +11,6 @@ use crate::accuracy::mesh::{CellErrors, Mesh};
 use crate::model::{Analysis, Beam, Discretization, Model, Place, Section};
 use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Shape, Trajectory};
 use std::f64::consts::TAU;
-
-/// Strains of strings smaller than this are round-off.
-const NO_STRAIN: f64 = 1e-13;
-/// Curvatures smaller than this per beam length are round-off.
-const STRAIGHT: f64 = 1e-9;
 
 /// An axial force that differs on both sides of a place by more than this part of the largest, or of M/L, jumps there; so does a bending
 /// moment, by this part of the largest.
@@ -85,7 +81,7 @@ pub fn states<'t>(
         }
         difference.probes.push(ProbeErrors { name: probe.name.clone(), samples });
     }
-    let (mut curvature, mut largest) = (0.0_f64, 0.0_f64);
+    let (mut curvature, mut largest) = (0.0_f64, vec![0.0_f64; model.beams.len()]);
     // Per beam and record: the largest distance and angle.
     let mut most = vec![vec![[0.0_f64; 2]; fine.parameter.len()]; model.beams.len()];
     for (index, (beam, mesh)) in model.beams.iter().zip(meshes).enumerate() {
@@ -116,7 +112,7 @@ pub fn states<'t>(
                 let (end, node) = (k + 1 == s.len(), mesh.must_be(s[k]));
                 // At inner nodes only positions are compared: strains and curvatures may jump there.
                 if bends && (end || !node) {
-                    largest = largest.max(b.curvature.abs());
+                    largest[index] = largest[index].max(b.curvature.abs());
                     curvature = larger(curvature, error.curvature);
                 }
                 if !end && !node {
@@ -146,11 +142,11 @@ pub fn states<'t>(
         }
     }
     // Stations are inside the cells; where cells meet curvatures err most.
-    for ((beam, a), b) in model.beams.iter().zip(&coarse.last).zip(&fine.last) {
+    for (((beam, a), b), largest) in model.beams.iter().zip(&coarse.last).zip(&fine.last).zip(&mut largest) {
         if beam.section.bending_stiffness.is_none() {
             continue;
         }
-        largest = b.curvature.iter().fold(largest, |largest, value| largest.max(value.abs()));
+        *largest = b.curvature.iter().fold(*largest, |largest, value| largest.max(value.abs()));
         for (k, (s, value)) in a.s.iter().zip(&a.curvature).enumerate() {
             let other = interpolated(&b.s, &b.curvature, *s, !is_before(&a.s, k));
             curvature = other.map_or(curvature, |other| larger(curvature, (value - other).abs()));
@@ -169,14 +165,13 @@ pub fn states<'t>(
             fill(&mut probe.samples, &known, |a, b| if a.x >= b.x { *a } else { *b });
         }
     }
-    let scale = lengths.iter().copied().fold(0.0, f64::max);
-    let (section_force, [force, moment]) =
-        section_forces(&coarse.last, &fine.last, no_force(model, &lengths));
-    difference.errors = Errors {
-        result,
-        curvature: (largest * scale > STRAIGHT).then(|| curvature / largest),
-        section_force,
-    };
+    let negligible: Vec<Negligible> = (model.beams.iter().zip(meshes).zip(&fine.last))
+        .map(|((beam, mesh), shape)| Negligible::of(beam, mesh, shape, analysis))
+        .collect();
+    let is_bent = largest.iter().zip(&negligible).any(|(largest, none)| *largest > none.curvature);
+    let largest = largest.into_iter().fold(0.0, f64::max);
+    let (section_force, [force, moment]) = section_forces(&coarse.last, &fine.last, &negligible);
+    difference.errors = Errors { result, curvature: is_bent.then(|| curvature / largest), section_force };
     difference.scales = Scales { curvature: largest, force, moment };
     if result.is_finite() { Ok(difference) } else { Err("a position is not a number".into()) }
 }
@@ -188,20 +183,6 @@ fn is_shapeless_at_first(model: &Model, analysis: &Analysis, run: &Trajectory) -
         && run.parameter.len() > 1
         && run.parameter[0] == 0.0
         && model.initial_shapes.iter().any(|shape| is_string(shape.beam))
-}
-
-/// The force \[N\] below which that of no beam is more than the round-off of none: EI κ/L of a curvature κ that is none, and of strings
-/// EA times the round-off of a strain.
-fn no_force(model: &Model, lengths: &[f64]) -> f64 {
-    let of_beam = |(beam, length): (&Beam, &f64)| match (
-        &beam.section.bending_stiffness,
-        &beam.section.axial_stiffness,
-    ) {
-        (Some(bending), _) => STRAIGHT * bending.mean(*length) / (length * length),
-        (None, Some(axial)) => NO_STRAIN * axial.mean(*length),
-        (None, None) => 0.0,
-    };
-    model.beams.iter().zip(lengths).map(of_beam).reduce(f64::min).unwrap_or(0.0)
 }
 
 /// Gives records that the coarse run has not those of the records around them, of which `choose`
@@ -414,7 +395,14 @@ mod tests {
             (shape.x[k], shape.y[k], shape.angle[k]) = (sample.x, sample.y, sample.angle);
             (shape.strain[k], shape.curvature[k]) = (sample.strain, sample.curvature);
         }
-        Trajectory { parameter: parameter.into(), probes: vec![probe], stations, ..Trajectory::default() }
+        let last = vec![Shape::default(); 2];
+        Trajectory {
+            parameter: parameter.into(),
+            probes: vec![probe],
+            stations,
+            last,
+            ..Trajectory::default()
+        }
     }
 
     /// Worked out by hand: what differs at nine places in two records, the first and the last of three.
