@@ -3,20 +3,23 @@
 //! # Forces in a recorded state
 //! The positions of a recorded state err by a part of the tolerance, and stiffness times this error
 //! would hide the forces. A step knows its forces through the inertia in its stages. The
-//! accelerations a of the stages, continued to the record, are first freed of components that would
-//! strain the beam faster than a step of length h can follow. Then the state is moved by δ, of the
+//! accelerations a of the stages, continued to the record, are freed of components that would
+//! strain the beam faster than a step of length h can follow, and the state is moved by δ, of the
 //! size of its error, until its forces balance them:
 //!
 //! ```text
-//! (K + c M) w + Bᵀν = −(K a + D²f[v, v])             B w = −B a − Ḃ v
-//!     a ← a + w,   c = (4/h)², d = 4/h
 //! (K + d D + c M) δ + Bᵀμ = −(M a + f(q) + f_d(q, v))   B c δ = −B a − Ḃ v
-//!     q ← q + δ, v ← v + d δ, a ← a + c δ
+//!     q ← q + δ, v ← v + d δ, a ← a + c δ,   c = (4/h)², d = 4/h
+//! (K + c M) w + Bᵀν = −(K a + D²f[v, v])             B w = −B a − Ḃ v
+//! (K + c M) u + Bᵀν = c M w                          B u = 0
+//!     a ← a + w − u
 //! ```
 //!
-//! K a + D²f[v, v] is f̈: stiff directions move as if they were constrained. Slow motions receive
-//! the acceleration that their forces give; motions too fast to be followed receive the
-//! quasi-static force under the inertia of the rest.
+//! K a + D²f[v, v] is f̈: stiff directions move as if they were constrained. It is taken where the state has been moved
+//! once, since the forces of a state that errs turn with a slow motion, and would change its acceleration; u is what w
+//! still has of one. The state is moved once more under what has become of a. Slow motions receive the acceleration
+//! that their forces give; motions too fast to be followed receive the quasi-static force under the inertia of the
+//! rest.
 
 use super::super::{State, Tendency};
 use super::{Acceleration, Motion, Rates};
@@ -63,7 +66,7 @@ impl Balance {
 
 /// ω h beyond which a vibration is too fast for steps of length h.
 const FAST: f64 = 4.0;
-/// How often a state is moved: the first tangent contains the stress due to the error of the state.
+/// How often a state is moved; before the second time the accelerations are freed of what strains.
 const PASSES: usize = 2;
 /// Change of a gradient, or of a position in beam lengths, over which a tangent is differenced.
 const DIFFERENCE: f64 = 1e-4;
@@ -116,10 +119,14 @@ impl Motion<'_> {
         for pass in 0..PASSES {
             self.tangent_at(&stage.state, &stage.rates[n..]);
             let factor = self.factorize(c, d, None)?;
-            if pass == 0 {
+            if pass > 0 {
                 let mut change = self.rate_of_rates(&stage);
                 self.constraint_defects(&stage, 1.0, &mut change[n..]);
                 factor.solve(&mut change);
+                let mut slow = vec![0.0; self.unknowns()];
+                self.multiply_free_mass(c, &change, &mut slow);
+                factor.solve(&mut slow);
+                change.iter_mut().zip(&slow).for_each(|(w, u)| *w -= u);
                 self.from_frames(&mut change);
                 stage.rates[..n].iter_mut().zip(&change).for_each(|(a, w)| *a += w);
             }
