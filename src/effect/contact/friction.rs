@@ -62,10 +62,14 @@ struct Touching {
     slip: f64,
     /// ∂σ/∂r.
     along: Vector2<f64>,
-    /// Largest possible |e| \[m\].
+    /// Largest possible |e| \[m\] …
     limit: f64,
+    /// … and ∂|e|/∂r of it.
+    limit_slope: Vector2<f64>,
     /// Whether it slides.
     slides: bool,
+    /// Whether it is pressed in by no more than round-off, which then decides whether it slides.
+    barely: bool,
     /// k_t ∂(e ∂σ/∂r)/∂r.
     stiffness: Matrix2<f64>,
     /// The part of it by which the force of a sliding point follows the pressure.
@@ -172,10 +176,9 @@ impl FrictionIntegral {
         // the derivative of this fraction.
         let away = penalty.gap_at(&start).max(0.0);
         let new = slip.is_none();
+        let round_off = ROUND_OFF * (r.amax() + penalty.gap);
         let (share, growth) = match depth + away {
-            sum if new && sum > ROUND_OFF * (r.amax() + penalty.gap) => {
-                (depth / sum, normal * (-away / (sum * sum)))
-            }
+            sum if new && sum > round_off => (depth / sum, normal * (-away / (sum * sum))),
             _ => (1.0, Vector2::zeros()),
         };
         let trial = slip.unwrap_or(0.0) + share * way;
@@ -190,7 +193,9 @@ impl FrictionIntegral {
         let change = along * change.transpose() * stiffness;
         let by_pressure = if slides && !new { change } else { Matrix2::zeros() };
         let stiffness = change + bend * (slip * stiffness);
-        Touching { weight, values, slip, along, limit, slides, stiffness, by_pressure }
+        let limit_slope = normal * -per_depth;
+        let barely = depth <= round_off;
+        Touching { weight, values, slip, along, limit, limit_slope, slides, barely, stiffness, by_pressure }
     }
 }
 
@@ -287,11 +292,18 @@ impl FrictionEffect for FrictionIntegral {
     fn sliding(&self, accepted: &AcceptedState, q: &[f64], v: &[f64]) -> Option<bool> {
         let (mut power, mut balance) = (0.0, 0.0);
         self.for_touching(accepted, q, |cell, _, point| {
-            if point.slides {
-                let speed = point.along.dot(&self.contact.cells.curve(cell, v).at(&point.values));
+            if point.barely {
+                return;
+            }
+            let velocity = self.contact.cells.curve(cell, v).at(&point.values);
+            let speed = point.along.dot(&velocity);
+            // Where the pressure falls, a point slides on while it moves back more slowly than its limit falls. The trial
+            // counts that of the whole step, and would have it slide for longer.
+            let slides = point.slides && point.slip.signum() * speed > point.limit_slope.dot(&velocity);
+            if slides {
                 power += point.slip * point.weight * speed;
             }
-            balance += point.weight * if point.slides { point.limit } else { -point.limit };
+            balance += point.weight * if slides { point.limit } else { -point.limit };
         });
         (balance > 0.0).then_some(power >= 0.0)
     }

@@ -597,6 +597,21 @@ impl<'a> Collocation<'a> {
         error
     }
 
+    /// The error of the position because friction, at the end `to` of a step, is that of a straight way from the accepted
+    /// state: what it would be had the stages been accepted in turn sees what sticks or slides in between.
+    fn error_of_path(&mut self, from: &State, to: &State) -> f64 {
+        if !self.motion.system().has_friction() {
+            return 0.0;
+        }
+        let passed = self.stages(from, to).into_iter().map(|stage| stage.state);
+        let mut force = self.motion.forgotten_friction(passed, to);
+        let unknowns = self.motion.unknowns_of(to).into_owned();
+        self.turn_to(&unknowns);
+        self.solve_turned(self.eigenvalue().powi(2), &mut force);
+        self.motion.from_frames(&mut force);
+        self.motion.distance(&force)
+    }
+
     /// Σ ℓ_j(x) Q̈_j of the last attempt.
     fn polynomial(&mut self, x: f64) {
         let s = self.tableau.stages();
@@ -705,7 +720,7 @@ impl Method for Collocation<'_> {
         let solve = |change: &mut [f64]| kept.solve_turned(block, turns, Complex::new(1.0, 0.0), change);
         motion.project(to, &StepMatrix { inertia, step: h, solve })?;
         let Some(_) = allowed else { return Ok(0.0) };
-        Ok(self.error(from, h) + unseen)
+        Ok(self.error(from, h) + self.error_of_path(state, to) + unseen)
     }
 
     fn accept(&mut self) {

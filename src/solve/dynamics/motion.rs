@@ -185,6 +185,25 @@ impl<'a> Motion<'a> {
         }
     }
 
+    /// By how much friction in the state `end` would differ had these states of the unknowns been accepted on the way
+    /// there, in the supports' frames.
+    pub fn forgotten_friction(&self, passed: impl Iterator<Item = State>, end: &State) -> Vec<f64> {
+        let mut accepted = self.accepted.clone();
+        for mut state in passed {
+            self.carry(&mut state);
+            let variables = self.system.internal_variables(&accepted, &state.q);
+            accepted = AcceptedState { q: state.q, variables };
+        }
+        let n = self.coordinates();
+        let mut force = vec![0.0; self.unknowns()];
+        self.system.add_friction(&self.accepted, &end.q, &mut force[..n]);
+        force.iter_mut().for_each(|f| *f = -*f);
+        self.system.add_friction(&accepted, &end.q, &mut force[..n]);
+        self.system.supports().to_frames(end.time, &mut force[..n]);
+        self.system.polar().forces(&end.q, &mut force[..n]);
+        force
+    }
+
     /// Whether tangents depend on the path to the last accepted state: with friction, and with
     /// torsion springs that are wound up.
     pub fn remembers(&self) -> bool {
