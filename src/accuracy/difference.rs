@@ -66,8 +66,8 @@ pub(super) struct Scales {
 }
 
 impl Difference {
-    /// Divided by these: positions, angles, velocities, values and events by the first, curvatures, strains and forces by
-    /// the second.
+    /// Divided by these: positions, velocities, values and events by the first, curvatures, strains and forces by the
+    /// second, angles, which are derivatives of positions as curvatures are of them, by what is between both.
     #[must_use]
     pub fn divided(mut self, by: [f64; 2]) -> Self {
         let [result, curvature] = by;
@@ -77,7 +77,7 @@ impl Difference {
         for sample in self.probes.iter_mut().flat_map(|probe| &mut probe.samples) {
             sample.x /= result;
             sample.y /= result;
-            sample.angle /= result;
+            sample.angle /= (result * curvature).sqrt();
             sample.strain /= curvature;
             sample.curvature /= curvature;
             sample.vx = sample.vx.map(|v| v / result);
@@ -290,7 +290,7 @@ pub(super) mod tests {
             cells: vec![CellErrors { squares: vec![k], order: 2.0 }],
             scales: Scales::default(),
         };
-        let same = |found: &Difference, [first, second]: [f64; 2]| {
+        let same = |found: &Difference, [first, second, angle]: [f64; 3]| {
             let errors =
                 Errors { result: first, curvature: Some(3.0 * second), section_force: Some(6.0 * second) };
             assert_eq!(found.errors, errors);
@@ -298,7 +298,7 @@ pub(super) mod tests {
             let sample = ProbeSample {
                 x: first,
                 y: 2.0 * first,
-                angle: 3.0 * first,
+                angle: 3.0 * angle,
                 curvature: 6.0 * second,
                 strain: 9.0 * second,
                 vx: Some(4.0 * first),
@@ -317,11 +317,11 @@ pub(super) mod tests {
                 (found.beams[0].position[0], found.beams[0].curvature[0]),
                 (7.0 * first, 12.0 * second)
             );
-            assert_eq!(found.cells[0].squares, [8.0], "cells are told apart by size only");
+            assert_eq!(found.cells[0].squares, [16.0], "cells are told apart by size only");
         };
-        let divided = of(8.0).divided([2.0, 4.0]);
-        same(&divided, [4.0, 2.0]);
-        same(&divided.plus(&of(1.0)).expect("as many records"), [5.0, 3.0]);
+        let divided = of(16.0).divided([2.0, 8.0]);
+        same(&divided, [8.0, 2.0, 4.0]);
+        same(&divided.plus(&of(1.0)).expect("as many records"), [9.0, 3.0, 5.0]);
         assert!(divided.plus(&Difference::default()).is_none(), "an event has ended one of the motions");
     }
 
