@@ -415,7 +415,10 @@ impl<'a> Collocation<'a> {
                 rate = if last[0] > 0.0 { (size / last[0]).sqrt() } else { size / last[1] };
             }
             let stalled = last[1] > 0.0 && rate > 0.5 && size <= ROUND_OFF;
-            if size == 0.0 || stalled || (rate < 1.0 && size * rate / (1.0 - rate) <= tolerance) {
+            // The accelerations with which a motion starts shake short cells by the last digits of their positions. One increment takes that
+            // away and tells nothing of how fast the rest falls.
+            let told = self.last_step > 0.0 || iteration >= 2;
+            if size == 0.0 || stalled || (told && rate < 1.0 && size * rate / (1.0 - rate) <= tolerance) {
                 if let Some(kept) = &mut self.kept {
                     kept.rate = rate;
                 }
