@@ -415,9 +415,9 @@ impl<'a> Collocation<'a> {
                 rate = if last[0] > 0.0 { (size / last[0]).sqrt() } else { size / last[1] };
             }
             let stalled = last[1] > 0.0 && rate > 0.5 && size <= ROUND_OFF;
-            // The accelerations with which a motion starts shake short cells by the last digits of their positions. One increment takes that
-            // away and tells nothing of how fast the rest falls.
-            let told = self.last_step > 0.0 || iteration >= 2;
+            // The accelerations with which a motion starts shake short cells by the last digits of their positions. The
+            // first increment takes that away, and tells nothing of how fast the rest falls.
+            let told = self.last_step > 0.0 || iteration >= 2 || size <= tolerance;
             if size == 0.0 || stalled || (told && rate < 1.0 && size * rate / (1.0 - rate) <= tolerance) {
                 if let Some(kept) = &mut self.kept {
                     kept.rate = rate;
