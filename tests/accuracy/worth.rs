@@ -1051,9 +1051,11 @@ fn moments_of_taut_strings_are_as_accurate_as_wanted() {
     let layer = (bending * (1.0 + tension / axial) / tension).sqrt();
     let truth = weight * layer * (length / 2.0 - layer);
     let found = results.states().last[0].bending_moment[0].abs();
-    assert!((found / truth - 1.0).abs() < 1e-2, "{found:e} instead of {truth:e}");
+    let miss = (found / truth - 1.0).abs();
+    assert!(miss < 1e-2, "{found:e} instead of {truth:e}");
+    // The formula leaves out what is of second order in the layer and the sag; round-off is not what is told.
     let told = error(&results).estimated.section_force.expect("there are forces");
-    assert!(told <= 1e-2, "{told:e}");
+    assert!(told <= 1e-2 && miss <= 5.0 * told + 1e-5 && told > 1e-9, "told {told:e}, true {miss:e}");
 }
 
 /// A straight bar has no moments, at any place and in any direction, but for round-off: whoever wants them accurate gets

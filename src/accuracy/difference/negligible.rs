@@ -14,6 +14,15 @@ const OF_ARMS: f64 = 1e-14;
 const OF_MOTIONS: f64 = 1e-9;
 /// Strains of strings.
 const OF_STRAINS: f64 = 1e-13;
+/// Of round-off two meshes do not agree to this part: what they agree about is none, however little it is against what
+/// short cells could make.
+const AGREED: f64 = 0.1;
+
+/// Whether the largest value that a mesh has found tells something, where another one differs from it by so much and `none` is what
+/// round-off makes.
+pub fn tells(largest: f64, difference: f64, none: f64) -> bool {
+    largest > none || difference < AGREED * largest
+}
 
 /// Less than this tells nothing of a beam.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,6 +90,8 @@ mod tests {
         assert!(near(still.moment(1e9) - still.moment(0.0), 8e-5), "{still:?}");
         let moving = of("dynamic.duration = 1", 0);
         assert!(near(moving.curvature, 5e-10) && near(moving.moment(3.0), 1e-9 + 6e-9), "{moving:?}");
+        assert!(tells(2.0, 2.0, 1.0) && tells(1.0, 0.09, 2.0));
+        assert!(!tells(1.0, 0.11, 2.0) && !tells(0.0, 0.0, 0.0));
         let string = of("static = {}", 1);
         assert_eq!((string.curvature, string.force, string.moment(1.0)), (0.0, 1e-13, 0.0));
     }

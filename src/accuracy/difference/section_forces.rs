@@ -1,7 +1,7 @@
 //! By how much section forces differ.
 
 use super::larger;
-use super::negligible::Negligible;
+use super::negligible::{Negligible, tells};
 use super::places::{interpolated, is_before};
 use crate::results::Shape;
 
@@ -33,7 +33,7 @@ pub fn section_forces(
     let force = n.max(q).max(m / length);
     let no_force = negligible.iter().map(|beam| beam.force).reduce(f64::min).unwrap_or(0.0);
     let no_moment = negligible.iter().map(|beam| beam.moment(force)).fold(0.0, f64::max);
-    let moment = if m > no_moment { m } else { 0.0 };
+    let moment = if tells(m, bending, no_moment) { m } else { 0.0 };
     let error = (force > no_force).then(|| {
         let bending = if moment > 0.0 { bending / moment } else { 0.0 };
         larger(larger(axial / force, shear / force), bending)

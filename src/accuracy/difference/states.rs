@@ -1,7 +1,7 @@
 //! By how much equilibria and motions differ.
 
 use super::events::events;
-use super::negligible::Negligible;
+use super::negligible::{Negligible, tells};
 use super::places::{interpolated, is_before, is_twice, same_place};
 use super::section_forces::section_forces;
 use super::stations::parts;
@@ -168,7 +168,8 @@ pub fn states<'t>(
     let negligible: Vec<Negligible> = (model.beams.iter().zip(meshes).zip(&fine.last))
         .map(|((beam, mesh), shape)| Negligible::of(beam, mesh, shape, analysis))
         .collect();
-    let is_bent = largest.iter().zip(&negligible).any(|(largest, none)| *largest > none.curvature);
+    let is_bent =
+        largest.iter().zip(&negligible).any(|(largest, none)| tells(*largest, curvature, none.curvature));
     let largest = largest.into_iter().fold(0.0, f64::max);
     let (section_force, [force, moment]) = section_forces(&coarse.last, &fine.last, &negligible);
     difference.errors = Errors { result, curvature: is_bent.then(|| curvature / largest), section_force };
