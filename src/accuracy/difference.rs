@@ -1,6 +1,7 @@
 //! By how much two runs of a model differ: where along the beams, when, and in which cells.
 
 mod bent;
+mod equilibrium;
 mod events;
 mod kinks;
 mod laid_out;

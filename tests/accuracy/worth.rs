@@ -1073,3 +1073,28 @@ fn nothing_is_said_of_moments_and_curvatures_that_are_round_off() {
     assert!(found.notes.iter().any(|note| note.contains("no curvature")), "{:?}", found.notes);
     assert!(found.estimated.section_force.is_some_and(|told| told < 1e-9), "{found:?}");
 }
+
+/// A beam whose last few millimetres lie against a box: its free end is bent by no moment, and stretched by the force that pulls there. The
+/// cells of the first meshes are longer than the contact, of which they tell nothing.
+#[test]
+fn a_free_end_in_a_short_contact_is_as_accurate_as_wanted() {
+    let (axial, force, curvature) = (1e-2, [2e-5, 9e-6], 1.7e-3);
+    let results = run(&scene(&format!(
+        "beam.arm = {{ start = [0, 0], end = [0, 1], bending_stiffness = 1e-5, axial_stiffness = {axial:?} }}\n\
+         support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]\n\
+         effect.distributed_force = [{{ beam = 'arm', value = [2e-5, 5e-6] }}]\n\
+         effect.force = [{{ beam = 'arm', at = 'end', value = {force:?} }}]\n\
+         effect.contact = [{{ beam = 'arm', box = {{ center = [0.186, 0.958], size = [0.333, 0.116], angle = 1.815 }}, \
+         stiffness = 6, half_thickness = 0.007 }}]\n\
+         probe = [{{ name = 'tip', beam = 'arm', at = 'end' }}]\n\
+         analysis.static.accuracy = {{ position = 1.7e-4, curvature = {curvature:?} }}\n"
+    )));
+    let tip = last(&results);
+    let told = error(&results).probes[0].samples.last().copied().expect("a record");
+    let largest = results.states().last[0].curvature.iter().fold(0.0_f64, |most, bent| most.max(bent.abs()));
+    assert!(tip.curvature.abs() < curvature * largest, "{} of {largest}", tip.curvature);
+    assert!(tip.curvature.abs() < 3.0 * told.curvature, "{} told {}", tip.curvature, told.curvature);
+    let strain = (force[0] * tip.angle.cos() + force[1] * tip.angle.sin()) / axial;
+    let off = (tip.strain - strain).abs();
+    assert!(off < 3.0 * told.strain && told.strain < 0.1 * strain, "{} instead of {strain}", tip.strain);
+}

@@ -1,5 +1,6 @@
 //! By how much equilibria and motions differ.
 
+use super::equilibrium::at_least_off_balance;
 use super::events::events;
 use super::negligible::{Negligible, tells};
 use super::places::{interpolated, is_before, is_twice, same_place};
@@ -174,6 +175,7 @@ pub fn states<'t>(
     let (section_force, [force, moment]) = section_forces(&coarse.last, &fine.last, &negligible);
     difference.errors = Errors { result, curvature: is_bent.then(|| curvature / largest), section_force };
     difference.scales = Scales { curvature: largest, force, moment };
+    at_least_off_balance(&mut difference, model, meshes, fine);
     if result.is_finite() { Ok(difference) } else { Err("a position is not a number".into()) }
 }
 
