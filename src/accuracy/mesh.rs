@@ -9,7 +9,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use crate::centreline::Curve;
-use crate::model::{Along, Discretization, Model, Nodes, Section};
+use crate::model::{Along, Discretization, Model, Nodes, Place, Section};
 
 /// Cells with which the search begins, of the longest beam; fewer are of no use …
 const FIRST: f64 = 4.0;
@@ -46,6 +46,8 @@ const CAREFUL: f64 = 2.0;
 const MORE: f64 = 1.1;
 /// Largest relative difference of the cells of even spacing.
 const SAME: f64 = 1e-9;
+/// Loads that are nearer to a node, in beam lengths, need none of their own.
+const NEAR: f64 = 2e-3;
 /// Places that are nearer to a node, in cells, are nearly nodes.
 const AT_NODE: f64 = 0.01;
 
@@ -56,6 +58,35 @@ pub(super) struct Mesh {
     pub nodes: Vec<f64>,
     /// Nodes that must be, ends included.
     fixed: Vec<f64>,
+}
+
+/// The nodes that a beam of this length \[m\] must have, rising, ends included. A load that acts in a point, begins or ends very near to another
+/// one of them has none of its own: cells as short as that amplify the round-off of positions, and without one the error there is
+/// that of a load times the distance.
+fn fixed(model: &Model, beam: usize, length: f64) -> Vec<f64> {
+    let here = |at: Place| (at.beam == beam).then_some(at.s);
+    // Meshfree nodes that are close amplify round-off.
+    let meshfree = matches!(model.beams[beam].discretization, Discretization::Rpim { .. });
+    let edges = if meshfree { Vec::new() } else { model.edges(beam) };
+    let (loads, others): (Vec<_>, Vec<_>) = model.parts.iter().partition(|part| part.resists().is_empty());
+    let mut of_loads: Vec<f64> = loads.iter().flat_map(|part| part.edges()).filter_map(here).collect();
+    let mut needed: Vec<f64> = edges.iter().copied().filter(|s| !of_loads.contains(s)).collect();
+    of_loads.retain(|s| edges.contains(s));
+    of_loads.extend(loads.iter().filter_map(|part| here(part.point()?)));
+    of_loads.sort_by(f64::total_cmp);
+    needed.extend(others.iter().filter_map(|part| here(part.point()?)));
+    needed.extend(model.supports.iter().filter_map(|support| here(support.at)));
+    needed.extend(model.breaks(beam));
+    let mut fixed = vec![0.0, length];
+    for (places, near) in [(needed, SAME), (of_loads, NEAR)] {
+        for s in places {
+            let next = fixed.partition_point(|node| *node < s).clamp(1, fixed.len() - 1);
+            if (s - fixed[next - 1]).min(fixed[next] - s) > near * length {
+                fixed.insert(next, s);
+            }
+        }
+    }
+    fixed
 }
 
 /// What the cells of a mesh err by.
@@ -86,22 +117,7 @@ impl Mesh {
             // A centreline without length is refused where the model is built.
             let Some(curve) = curve else { return Self { nodes: vec![0.0], fixed: vec![0.0] } };
             let length = curve.length();
-            let mut fixed = vec![0.0];
-            let mut breaks = model.breaks(beam);
-            let supports = model.supports.iter().map(|support| support.at);
-            let points = supports.chain(model.parts.iter().filter_map(|part| part.point()));
-            breaks.extend(points.filter(|at| at.beam == beam).map(|at| at.s));
-            // Meshfree nodes that are close amplify round-off.
-            if !matches!(model.beams[beam].discretization, Discretization::Rpim { .. }) {
-                breaks.extend(model.edges(beam));
-            }
-            breaks.sort_by(f64::total_cmp);
-            for s in breaks.into_iter().filter(|s| *s < (1.0 - SAME) * length) {
-                if fixed.last().is_some_and(|last| s - last > SAME * length) {
-                    fixed.push(s);
-                }
-            }
-            fixed.push(length);
+            let fixed = fixed(model, beam, length);
             let straight =
                 number((times * FIRST.max(OF_HALF_WAVE * waves as f64)).max(FIRST) * length / longest);
             let turns = number(turning(curve) / TURN);

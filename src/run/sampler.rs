@@ -942,6 +942,7 @@ impl<'a> Sampler<'a> {
         let (mut locking, mut loose) = (self.locking.clone(), self.loose.clone());
         let mut reach = Reach::new(self.model);
         let mut tendons = Tendons::new(self.model, false);
+        let mut pressed = strings::Pressed::new(self.model);
         if self.model.outputs.reactions {
             solution.reactions.iter().for_each(|all| self.record_reactions(&mut trajectory, all));
         }
@@ -975,6 +976,9 @@ impl<'a> Sampler<'a> {
                 }
                 if reach.watches() {
                     reach.see(&self.shape(q), &trajectory.run.undeformed);
+                }
+                if pressed.are_there() {
+                    pressed.see(state.time, &self.shape(q));
                 }
             }
         }
@@ -1042,6 +1046,7 @@ impl<'a> Sampler<'a> {
         trajectory.run.warnings.extend(locking.warnings(kinetic));
         trajectory.run.warnings.extend(loose.warnings());
         trajectory.run.warnings.extend(reach.warnings());
+        trajectory.run.warnings.extend(pressed.warnings());
         trajectory.parameter.iter().for_each(|at| tendons.see_factor(*at));
         trajectory.run.warnings.extend(tendons.warnings());
         let divided = solution.statistics.rejected_steps;

@@ -1,6 +1,6 @@
 //! Demands of a model on its strings that a string, or its mesh, cannot meet.
 
-use crate::model::{FixedRotation, Joint, Model, Place};
+use crate::model::{Beam, FixedRotation, Joint, Model, Place};
 use crate::numeric::plain;
 use crate::results::Shape;
 use crate::system::System;
@@ -13,6 +13,73 @@ const SAME: f64 = 1e-9;
 const NEAR_NODE: f64 = 0.25;
 /// Of the angle of a kink and the length of the cells beside it: so far continuous tangents put the place of a kink off.
 const OF_KINK: f64 = 1.0 / 12.0;
+
+/// The part of its largest strain under tension by which a string may be pressed in a motion without a warning.
+const PRESSED: f64 = 0.1;
+
+/// The strings of a motion that resist pressure by a stiffness along their axis, which nothing keeps from folding.
+#[derive(Clone)]
+pub(super) struct Pressed {
+    strings: Vec<PressedString>,
+}
+
+#[derive(Clone)]
+struct PressedString {
+    beam: usize,
+    name: String,
+    /// The largest strain so far.
+    longest: f64,
+    /// The smallest one, with its time \[s\] and its place \[m\].
+    shortest: (f64, f64, f64),
+}
+
+impl Pressed {
+    pub(super) fn new(model: &Model) -> Self {
+        let is_string = |beam: &&(usize, &Beam)| {
+            let section = &beam.1.section;
+            section.bending_stiffness.is_none() && section.axial_stiffness.is_some() && section.is_linear()
+        };
+        let beams: Vec<(usize, &Beam)> = model.beams.iter().enumerate().collect();
+        let string = |&(beam, of): &(usize, &Beam)| PressedString {
+            beam,
+            name: of.name.clone(),
+            longest: 0.0,
+            shortest: (0.0, 0.0, 0.0),
+        };
+        Self { strings: beams.iter().filter(is_string).map(string).collect() }
+    }
+
+    /// Whether there are any.
+    pub(super) fn are_there(&self) -> bool {
+        !self.strings.is_empty()
+    }
+
+    /// Takes the shapes at a time into account.
+    pub(super) fn see(&mut self, time: f64, now: &[Shape]) {
+        for PressedString { beam, longest, shortest, .. } in &mut self.strings {
+            let Some(shape) = now.get(*beam) else { continue };
+            for (strain, s) in shape.strain.iter().zip(&shape.s) {
+                *longest = longest.max(*strain);
+                if *strain < shortest.0 {
+                    *shortest = (*strain, time, *s);
+                }
+            }
+        }
+    }
+
+    pub(super) fn warnings(&self) -> impl Iterator<Item = String> + '_ {
+        let pressed = self.strings.iter().filter(|string| string.shortest.0 < -PRESSED * string.longest);
+        pressed.map(|PressedString { name, longest, shortest: (strain, time, s), .. }| {
+            format!(
+                "string `{name}` is pressed, to a strain of {strain:.1e} at s = {} m and t = {} s (of {longest:.1e} where it is pulled most): nothing but the \
+                 length of its cells keeps it from folding there, and what follows depends on them; give it its `bending_stiffness`, or an \
+                 `axial_law` that resists tension only",
+                plain(*s, 4),
+                plain(*time, 4),
+            )
+        })
+    }
+}
 
 /// A message for every place where a string, which has no bending stiffness, has a fixed direction
 /// or carries a couple. It transmits no couple: only its first cells would bend, whatever their
@@ -91,4 +158,37 @@ fn kink(shape: &Shape, [before, behind]: [f64; 2]) -> Option<f64> {
     let inside = beside.into_iter().filter(|(from, to)| *from >= 0.0 && *to <= end);
     let usual = inside.filter_map(|(from, to)| turn(from, to)).reduce(f64::min).unwrap_or(0.0);
     Some(turn(before, behind)? - usual)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::parse;
+
+    /// Of a string, a beam and a rope that goes slack only the string is watched; a tenth of its largest strain is nothing to tell.
+    #[test]
+    fn a_pressed_string_is_told_with_its_time_and_place() {
+        let scene = parse(
+            "scene",
+            "beam.arm = { start = [0, 0], end = [2, 0], axial_stiffness = 1, bending_stiffness = 1, mass_per_length = 1 }\n\
+             beam.string = { start = [0, 1], end = [4, 1], axial_stiffness = 1, mass_per_length = 1 }\n\
+             beam.rope = { start = [0, 2], end = [4, 2], axial_law = { strain = [-1, 0, 1], force = [0, 0, 1] }, mass_per_length = 1 }\n\
+             support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'string', at = 'start', fix = ['x', 'y'] }, \
+             { beam = 'rope', at = 'start', fix = ['x', 'y'] }]\n\
+             analysis.dynamic = { duration = 1 }\n",
+        )
+        .unwrap_or_else(|error| panic!("{error}"));
+        let shapes = |strain: [f64; 2]| {
+            let shape = Shape { s: vec![0.0, 3.0], strain: strain.into(), ..Shape::default() };
+            [shape.clone(), shape.clone(), shape]
+        };
+        let mut pressed = Pressed::new(scene.model());
+        pressed.see(0.5, &shapes([0.25, -0.02]));
+        assert_eq!((pressed.are_there(), pressed.warnings().count()), (true, 0));
+        pressed.see(0.75, &shapes([0.1, -0.03]));
+        pressed.see(1.0, &shapes([0.1, -0.01]));
+        let told: Vec<String> = pressed.warnings().collect();
+        let start = "string `string` is pressed, to a strain of -3.0e-2 at s = 3.0000 m and t = 0.7500 s (of 2.5e-1 where it is pulled most)";
+        assert!(told.len() == 1 && told[0].starts_with(start), "{told:?}");
+    }
 }

@@ -1098,3 +1098,28 @@ fn a_free_end_in_a_short_contact_is_as_accurate_as_wanted() {
     let off = (tip.strain - strain).abs();
     assert!(off < 3.0 * told.strain && told.strain < 0.1 * strain, "{} instead of {strain}", tip.strain);
 }
+
+/// A force at a hundredth, …, a millionth of the length before the free end moves it by P s² (3 L − s)/(6 EI), but for parts of the square of its
+/// slope, 2.5e-7. A node of its own there would make a cell in which nothing but round-off remains.
+#[test]
+fn loads_just_before_an_end_need_no_short_cells() {
+    let force = 1e-3;
+    for s in [0.99, 0.999, 0.9999, 0.99999, 0.999_999] {
+        let results = run(&scene(&cantilever(
+            1556.0,
+            1.0,
+            &format!(
+                "effect.force = [{{ beam = 'arm', at = {s:?}, value = [0, {force:?}] }}]\n\
+                 analysis.static.accuracy = {{ position = 1e-5, curvature = 1e-4 }}"
+            ),
+        )));
+        let tip = last(&results);
+        let exact = force * s * s * (3.0 - s) / 6.0;
+        assert!((tip.y / exact - 1.0).abs() < 1e-6, "{s}: {} instead of {exact}", tip.y);
+        assert!(
+            error(&results).met && results.run().warnings.is_empty(),
+            "{s}: {:?}",
+            results.run().warnings
+        );
+    }
+}

@@ -447,3 +447,22 @@ fn short_cells_do_not_kick_a_rod_at_its_start() {
         assert!(miss < 10.0 * tolerance && miss < 1e-6, "{tolerance:e}: {miss:.1e}");
     }
 }
+
+/// The end of a string under tension is brought back to where the string has no tension, and beyond: the wave that follows presses
+/// it, which a string does not resist. As long as it is pulled nothing is said.
+#[test]
+fn strings_that_are_pressed_are_warned_of() {
+    for (back, pressed) in [(-0.05, false), (-0.12, true)] {
+        let text = format!(
+            "beam.b = {{ start = [0, 0], end = [1, 0], axial_stiffness = 4, mass_per_length = 1, basis.ancf.elements = 16, \
+             initial_shape.line = {{ start = [0, 0], end = [1.1, 0] }} }}\n\
+             support = [{{ beam = 'b', at = 'start', fix = ['x', 'y'] }}, \
+             {{ beam = 'b', at = 'end', fix = ['x', 'y'], move = {{ x = {back}, in_time.smooth_ramp.duration = 2.0 }} }}]\n\
+             analysis.dynamic = {{ duration = 2.0, radau.tolerance = 1e-5 }}\n"
+        );
+        let scene = parse("string", &text).unwrap_or_else(|error| panic!("{error}"));
+        let results = scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}"));
+        let warned = results.run().warnings.iter().any(|warning| warning.contains("is pressed"));
+        assert_eq!(warned, pressed, "{back}: {:?}", results.run().warnings);
+    }
+}

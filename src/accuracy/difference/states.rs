@@ -20,7 +20,7 @@ const JUMP: f64 = 1e-6;
 /// The parts of the largest errors of positions and of angles on its beam that those of a probe are at least.
 const LEAST: (f64, f64) = (0.2, 0.1);
 
-/// Velocities and angles of so many records before and after tell of their errors, too.
+/// Velocities, angles, strains and curvatures of so many records before and after tell of their errors, too.
 const NEAR_RECORDS: usize = 2;
 
 /// Errors of a record of which nothing is known.
@@ -269,8 +269,8 @@ fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, beam: 
     }
 }
 
-/// Velocities and angles of a motion err by no less than they do in the records of these numbers that are near: their errors are
-/// waves of high frequency, and one record may see where they pass zero.
+/// Velocities, angles, strains and curvatures of a motion err by no less than they do in the records of these numbers that are near: their
+/// errors are waves of high frequency, and one record may see where they pass zero.
 fn also_before_and_after(samples: &mut [ProbeSample], known: &[usize]) {
     let seen: Vec<ProbeSample> = known.iter().filter_map(|j| samples.get(*j).copied()).collect();
     let most = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| larger(a, b));
@@ -278,6 +278,8 @@ fn also_before_and_after(samples: &mut [ProbeSample], known: &[usize]) {
         let near = &seen[k.saturating_sub(NEAR_RECORDS)..(k + NEAR_RECORDS + 1).min(seen.len())];
         samples[*j] = near.iter().fold(samples[*j], |now, near| ProbeSample {
             angle: larger(now.angle, near.angle),
+            strain: larger(now.strain, near.strain),
+            curvature: larger(now.curvature, near.curvature),
             vx: most(now.vx, near.vx),
             vy: most(now.vy, near.vy),
             ..now
