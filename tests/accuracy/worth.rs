@@ -364,6 +364,35 @@ fn the_strain_jumps_where_the_gradient_is_fixed() {
     }
 }
 
+/// A bar that is pulled, and bent beside it, gets longer by N L/EA; with the gradient fixed at one end the strain of the first of n elements is
+/// held back, which makes it shorter by N L/(6 n EA), and no less as errors of the bending fall.
+#[test]
+fn what_a_fixed_gradient_holds_back_is_told() {
+    let strain = 0.01;
+    let of = |more: &str, rest: &str| {
+        scene(&format!(
+            "beam.bar = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1{more} }}\n\
+             support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y', 'gradient'] }}]\n\
+             effect.force = [{{ beam = 'bar', at = 'end', value = [10, 0] }}]\n\
+             probe = [{{ name = 'tip', beam = 'bar', at = 'end' }}, {{ name = 'clamp', beam = 'bar', at = 'start' }}]\n{rest}\n"
+        ))
+    };
+    for elements in [5_u32, 20, 80] {
+        let results = estimate(&of(&format!(", basis.ancf.elements = {elements}"), "analysis.static = {}"));
+        let off = strain / (6.0 * f64::from(elements));
+        assert!((last(&results).x - (1.0 + strain - off)).abs() < 1e-12);
+        let told = error(&results);
+        let [tip, clamp] = [0, 1].map(|k| *told.probes[k].samples.last().expect("a record"));
+        assert!((off..3.0 * off).contains(&told.estimated.result) && tip.x >= off, "{told:?}");
+        assert!(clamp.x == 0.0 && (strain..4.0 * strain).contains(&clamp.strain), "{clamp:?}");
+    }
+    for wanted in [1e-3, 1e-5] {
+        let results = run(&of("", &format!("analysis.static.accuracy = {wanted:e}")));
+        let truth = (last(&results).x - 1.0 - strain).abs();
+        judge("a fixed gradient", wanted, error(&results).estimated.result, truth);
+    }
+}
+
 /// A hinged beam of unit length, stiffness and mass vibrates with angular frequencies k²π² and buckles under k²π². Of eight
 /// half waves few cells, or half as many, see so little that two meshes may happen to agree.
 #[test]

@@ -5,7 +5,8 @@
 //! beam, and no others: the cubics that come nearest to a corner in energy do. Where the section couples stretch and bending by
 //! a stiffness EB that jumps, the strain that is wrong on one side bends the beam by ΔEB/EI times as much. These errors fall in
 //! proportion to h only, beside others that fall faster, so that runs on coarser meshes do not tell them. The strain itself is wrong by
-//! Δε/2 beside the place, and right at the other ends of both elements.
+//! Δε/2 beside the place, and right at the other ends of both elements. A support that fixes the gradient leaves no strain in its point,
+//! and does to each side what a jump of twice its strain would.
 
 use super::{Difference, larger};
 use crate::model::{Along, Beam, FixedRotation, Model, Place, Section};
@@ -45,8 +46,13 @@ pub(in crate::accuracy) fn strain_jumps(
     for (index, ((beam, nodes), shape)) in model.beams.iter().zip(nodes).zip(&run.last).enumerate() {
         let length = nodes.last().copied().unwrap_or(0.0);
         let softer = stiffness_jumps(model, index, length);
-        for s in within(points(model, index).chain(model.breaks(index)), length) {
-            let [along, turn] = at(model, beam, index, shape, (s, length));
+        let held = each_once(fixed_gradients(model, index).collect(), length);
+        let is_held = |s: f64| held.iter().any(|other| (s - other).abs() <= SAME * length);
+        let jumps_at = within(points(model, index).chain(model.breaks(index)), length);
+        let jumps_at = jumps_at.into_iter().filter(|s| !is_held(*s));
+        let jumps_at = jumps_at.map(|s| (s, at(model, beam, index, shape, (s, length)), false));
+        let held_at = held.iter().map(|s| (*s, held_back(model, beam, index, shape, (*s, length)), true));
+        for (s, [along, turn], held) in jumps_at.chain(held_at) {
             if along.is_nan() || along <= ROUND_OFF {
                 continue;
             }
@@ -57,7 +63,9 @@ pub(in crate::accuracy) fn strain_jumps(
             for ((probe, errors), seen) in model.probes.iter().zip(&mut sum.probes).zip(&run.probes) {
                 let away = probe.at.s - s;
                 let part = 1.0 - away.abs() / cells[usize::from(away > 0.0)];
-                if probe.at.beam != index || away.abs() <= SAME * length || part <= 0.0 {
+                let here = away.abs() <= SAME * length;
+                let part = if here { 1.0 } else { part };
+                if probe.at.beam != index || here && !held || part <= 0.0 {
                     continue;
                 }
                 let strain = OF_STRAIN * along * part;
@@ -74,17 +82,21 @@ pub(in crate::accuracy) fn strain_jumps(
             let (moved, turned) = (OF_JUMP * cell * along, OF_JUMP * cell * turn);
             let result = (moved + turned * length) / length;
             jumps.push(StrainJump { beam: index, s, error: result });
+            // A jump moves its place, a support that holds the strain back all but its place.
+            let moves = |place: f64| {
+                let away = (place - s).abs();
+                let moves = if held { away > SAME * length } else { away <= cell };
+                if moves { moved } else { 0.0 }
+            };
             sum.errors.result = larger(sum.errors.result, result);
             sum.records.iter_mut().for_each(|record| *record = larger(*record, result));
             if let Some(errors) = sum.beams.get_mut(index) {
                 for (place, error) in errors.s.iter().zip(&mut errors.position) {
-                    let near = if (place - s).abs() <= cell { moved } else { 0.0 };
-                    *error = larger(*error, (near + turned * length) / length);
+                    *error = larger(*error, (moves(*place) + turned * length) / length);
                 }
             }
             for (probe, errors) in model.probes.iter().zip(&mut sum.probes) {
-                let near = probe.at.beam == index && (probe.at.s - s).abs() <= cell;
-                let here = if near { moved } else { 0.0 };
+                let here = if probe.at.beam == index { moves(probe.at.s) } else { 0.0 };
                 let error = here + turned * length;
                 for sample in &mut errors.samples {
                     (sample.x, sample.y) = (larger(sample.x, error), larger(sample.y, error));
@@ -164,13 +176,41 @@ pub(super) fn strain_jump(model: &Model, place: Place, shape: &Shape) -> f64 {
 }
 
 /// By how much the strain jumps at `s`, and that times the jump of EB over EI.
-fn at(model: &Model, beam: &Beam, index: usize, shape: &Shape, (s, length): (f64, f64)) -> [f64; 2] {
+fn at(model: &Model, beam: &Beam, index: usize, shape: &Shape, place: (f64, f64)) -> [f64; 2] {
+    let Some([[strain, coupling, bending], [other, other_coupling, _]]) =
+        sides(model, beam, index, shape, place)
+    else {
+        return [0.0; 2];
+    };
+    let jump = (other - strain).abs();
+    [jump, jump * (other_coupling - coupling).abs() / bending]
+}
+
+/// The jump that would be as bad as a fixed gradient at `s`, which leaves no strain there, and that times EB over EI: it keeps the strain of
+/// each side from its value by what a jump of twice that does.
+fn held_back(model: &Model, beam: &Beam, index: usize, shape: &Shape, place: (f64, f64)) -> [f64; 2] {
+    let of = sides(model, beam, index, shape, place).map(|sides| {
+        sides.map(|[strain, coupling, bending]| {
+            [2.0 * strain.abs(), 2.0 * (strain * coupling).abs() / bending]
+        })
+    });
+    of.map_or([0.0; 2], |[before, behind]| [0, 1].map(|k| larger(before[k], behind[k])))
+}
+
+/// Before and behind a place: the strain of the forces there, EB \[N m\] and EI \[N m²\].
+fn sides(
+    model: &Model,
+    beam: &Beam,
+    index: usize,
+    shape: &Shape,
+    (s, length): (f64, f64),
+) -> Option<[[f64; 3]; 2]> {
     // Where nothing acts in the point itself, the forces are those of the places beside it.
     let first = shape.s.partition_point(|place| *place < s - SAME * length);
     let behind = shape.s.partition_point(|place| *place <= s + SAME * length);
     let [before, behind] = if first == behind { [first.max(1) - 1, behind] } else { [first, behind - 1] };
     let forces = |k: usize| Some([*shape.axial_force.get(k)?, *shape.bending_moment.get(k)?]);
-    let Some((before, behind)) = forces(before).zip(forces(behind)) else { return [0.0; 2] };
+    let (before, behind) = forces(before).zip(forces(behind))?;
     let side = |[force, moment]: [f64; 2], inside: f64| -> Option<[f64; 3]> {
         let value = |along: &Along| along.at(s, inside);
         let axial = value(beam.section.axial_stiffness.as_ref()?);
@@ -185,10 +225,5 @@ fn at(model: &Model, beam: &Beam, index: usize, shape: &Shape, (s, length): (f64
         let strain = (force - coupling / bending * moment) / (axial - coupling * coupling / bending);
         Some([strain + imposed, coupling, bending])
     };
-    let sides = [side(before, 0.5 * s), side(behind, 0.5 * (s + length))];
-    let [Some([strain, coupling, bending]), Some([other, other_coupling, _])] = sides else {
-        return [0.0; 2];
-    };
-    let jump = (other - strain).abs();
-    [jump, jump * (other_coupling - coupling).abs() / bending]
+    Some([side(before, 0.5 * s)?, side(behind, 0.5 * (s + length))?])
 }
