@@ -21,6 +21,8 @@ const MUTE: usize = 3;
 const STALLED: f64 = 0.7;
 /// Rounds in succession that gain nothing before the search gives up.
 const STALLS: usize = 2;
+/// The same in equilibria with obstacles: where in a cell a contact ends decides about its error, by chance.
+const STALLS_OF_CONTACT: usize = 4;
 /// Rounds after which errors that grow with time are no more those of too coarse a mesh.
 const GROWN: usize = 3;
 /// Errors of positions, in beam lengths, beyond which two motions have nothing in common.
@@ -98,6 +100,8 @@ impl<'a, 'o> Search<'a, 'o> {
         let mut before: Option<Seen> = None;
         let mut best: Option<Judged> = None;
         let (mut rounds, mut stalls, mut failures, mut mute) = (0, 0, 0, 0);
+        let touches = matches!(self.runner.analysis, Analysis::Static(_)) && self.runner.model.has_contact();
+        let most_stalls = if touches { STALLS_OF_CONTACT } else { STALLS };
         let mut too_coarse = false;
         loop {
             // Where the meshes of the round before were others, three runs tell how errors fall on these.
@@ -192,9 +196,9 @@ impl<'a, 'o> Search<'a, 'o> {
                 Some(format!("errors below {ROUND_OFF:e} are those of round-off"))
             } else if let Some(remains) = self.runner.remains(&judged.round, judged.caution, wanted) {
                 Some(remains)
-            } else if stalls >= STALLS && self.runner.open.load_steps {
+            } else if stalls >= most_stalls && self.runner.open.load_steps {
                 Some(STICKS.to_owned())
-            } else if stalls >= STALLS {
+            } else if stalls >= most_stalls {
                 let jump = || self.runner.largest_jump(&judged.round.jumps);
                 let jump = if errors.result <= wanted.result { jump() } else { None };
                 Some(self.runner.kink_at().or(jump).unwrap_or_else(|| SEVERAL.to_owned()))
