@@ -46,8 +46,10 @@ const CAREFUL: f64 = 2.0;
 const MORE: f64 = 1.1;
 /// Largest relative difference of the cells of even spacing.
 const SAME: f64 = 1e-9;
-/// Loads that are nearer to a node, in beam lengths, need none of their own.
+/// Loads that begin or end nearer to a free end, in beam lengths, need no node there …
 const NEAR: f64 = 2e-3;
+/// … nor do those that act in a point which is nearer than this.
+const NEAR_POINT: f64 = 5e-5;
 /// Places that are nearer to a node, in cells, are nearly nodes.
 const AT_NODE: f64 = 0.01;
 
@@ -60,32 +62,41 @@ pub(super) struct Mesh {
     fixed: Vec<f64>,
 }
 
-/// The nodes that a beam of this length \[m\] must have, rising, ends included. A load that acts in a point, begins or ends very near to another
-/// one of them has none of its own: cells as short as that amplify the round-off of positions, and without one the error there is
-/// that of a load times the distance.
+/// The nodes that a beam of this length \[m\] must have, rising, ends included. A load that begins or ends very near to a free end of the beam, or
+/// acts in a point nearer still, has none of its own: cells as short as that amplify the round-off of positions, and what the load does
+/// beyond a node that would be there is next to nothing.
 fn fixed(model: &Model, beam: usize, length: f64) -> Vec<f64> {
     let here = |at: Place| (at.beam == beam).then_some(at.s);
     // Meshfree nodes that are close amplify round-off.
     let meshfree = matches!(model.beams[beam].discretization, Discretization::Rpim { .. });
     let edges = if meshfree { Vec::new() } else { model.edges(beam) };
-    let (loads, others): (Vec<_>, Vec<_>) = model.parts.iter().partition(|part| part.resists().is_empty());
-    let mut of_loads: Vec<f64> = loads.iter().flat_map(|part| part.edges()).filter_map(here).collect();
-    let mut needed: Vec<f64> = edges.iter().copied().filter(|s| !of_loads.contains(s)).collect();
-    of_loads.retain(|s| edges.contains(s));
-    of_loads.extend(loads.iter().filter_map(|part| here(part.point()?)));
-    of_loads.sort_by(f64::total_cmp);
-    needed.extend(others.iter().filter_map(|part| here(part.point()?)));
+    let edges_of = |resist: bool| -> Vec<f64> {
+        let parts = model.parts.iter().filter(|part| part.resists().is_empty() != resist);
+        parts.flat_map(|part| part.edges()).filter_map(here).collect()
+    };
+    let points_of = |resist: bool| -> Vec<f64> {
+        let parts = model.parts.iter().filter(|part| part.resists().is_empty() != resist);
+        parts.filter_map(|part| here(part.point()?)).collect()
+    };
+    let [of_loads, of_others] = [false, true].map(edges_of);
+    let mut needed = model.breaks(beam);
+    needed.extend(edges.iter().filter(|s| !of_loads.contains(s) || of_others.contains(s)));
+    needed.extend(points_of(true));
     needed.extend(model.supports.iter().filter_map(|support| here(support.at)));
-    needed.extend(model.breaks(beam));
-    let mut fixed = vec![0.0, length];
-    for (places, near) in [(needed, SAME), (of_loads, NEAR)] {
-        for s in places {
-            let next = fixed.partition_point(|node| *node < s).clamp(1, fixed.len() - 1);
-            if (s - fixed[next - 1]).min(fixed[next] - s) > near * length {
-                fixed.insert(next, s);
-            }
+    let is_free = |end: f64| needed.iter().all(|s| (s - end).abs() > NEAR * length);
+    let free = [0.0, length].map(|end| is_free(end).then_some(end));
+    let is_apart = |s: &f64, near: f64| free.into_iter().flatten().all(|end| (s - end).abs() > near * length);
+    let mut places: Vec<f64> = edges.iter().copied().filter(|s| is_apart(s, NEAR)).collect();
+    places.extend(points_of(false).into_iter().filter(|s| is_apart(s, NEAR_POINT)));
+    places.extend(needed);
+    places.sort_by(f64::total_cmp);
+    let mut fixed = vec![0.0];
+    for s in places.into_iter().filter(|s| *s < (1.0 - SAME) * length) {
+        if fixed.last().is_some_and(|last| s - last > SAME * length) {
+            fixed.push(s);
         }
     }
+    fixed.push(length);
     fixed
 }
 

@@ -1,7 +1,8 @@
 //! Equilibria whose forces round-off keeps from balance.
 //!
 //! Positions are known to the last digit of a number, and forces follow from their differences: between nodes that are close, what a
-//! position may be off by makes forces of the size of the loads. Positions do not suffer from that; reactions and section forces do.
+//! position may be off by makes forces of the size of the loads. Positions hardly suffer from that as long as these forces are a small part of the
+//! loads; reactions and section forces do.
 
 use crate::assembly::{DiscretizedBeam, InternalVariables, nodes};
 use crate::numeric::plain;
@@ -9,6 +10,8 @@ use crate::system::System;
 
 /// Part of the forces by which they may be out of balance.
 const IMBALANCE: f64 = 1e-3;
+/// Part of the forces out of balance from which on positions may be off, too.
+const MOVES: f64 = 1e-2;
 /// What the round-off of positions leaves on a beam is at most so many times what it makes between the nearest nodes.
 const ROUND_OFFS: f64 = 100.0;
 
@@ -53,9 +56,10 @@ pub(super) fn out_of_balance(
         cells.map(|cell| (cell[1] - cell[0], part.name.as_str()))
     });
     let (shortest, beam) = cells.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    let positions = if off > MOVES * acting { "may be off as well" } else { "do not suffer from it" };
     Some(format!(
         "the forces of the equilibrium balance to {:.1} % only, and reactions or section forces err by as much: between nodes of beam \
-         `{beam}` that are {} m apart the last digit of a position makes forces of that size; positions do not suffer from it; use longer \
+         `{beam}` that are {} m apart the last digit of a position makes forces of that size; positions {positions}; use longer \
          cells, or a larger `accuracy`",
         100.0 * off / acting,
         plain(shortest, 2)

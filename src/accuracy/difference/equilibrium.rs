@@ -8,7 +8,8 @@
 //! ```
 //!
 //! with the curvature κ₀ of the curve along which the beam is laid out. Those of the shape functions, which are derivatives, differ from
-//! these by their own error. Where errors fall as the method promises, two meshes tell it by a third of their difference. At
+//! these by their own error, and moments, which forces make with positions as levers, by what those are off; of taut beams this is all there
+//! is. Where errors fall as the method promises, two meshes tell it by a third of their difference. At
 //! the edge of a contact, beside a stiff spring and in a layer they do not, and what is beyond that third is found here.
 
 use super::places::{interpolated, is_twice, same_place};
@@ -26,7 +27,8 @@ pub fn at_least_off_balance(difference: &mut Difference, model: &Model, meshes: 
     }
     for (index, ((beam, mesh), shape)) in model.beams.iter().zip(meshes).zip(&run.last).enumerate() {
         let actuated = model.parts.iter().any(|part| part.actuation(index).is_some());
-        let off = if actuated { None } else { Off::of(beam, shape) };
+        let known = difference.errors.result * mesh.length();
+        let off = if actuated { None } else { Off::of(beam, shape, known) };
         let Some(Off { strain, curvature }) = off else { continue };
         if let Some(most) = &mut difference.errors.curvature {
             let here = curvature.iter().copied().fold(0.0, larger);
@@ -68,20 +70,24 @@ struct Off {
 }
 
 impl Off {
-    /// `None` where forces do not tell strains: of elastic laws, and where the forces are not known.
-    fn of(beam: &Beam, shape: &Shape) -> Option<Self> {
+    /// What is certain of them where positions are `known` to be off by so much \[m\], and moments by as much times the largest force. `None`
+    /// where forces do not tell strains: of elastic laws, and where the forces are not known.
+    fn of(beam: &Beam, shape: &Shape, known: f64) -> Option<Self> {
         let section = &beam.section;
         let curve = Curve::new(&beam.centreline).ok()?;
-        let known =
+        let given =
             [&shape.axial_force, &shape.bending_moment].iter().all(|along| along.len() == shape.s.len());
-        if !section.is_linear() || !known {
+        if !section.is_linear() || !given {
             return None;
         }
+        let forces = shape.axial_force.iter().chain(&shape.shear_force);
+        let unsure = known * forces.fold(0.0_f64, |most, force| most.max(force.abs()));
+        let jumps: Vec<f64> = curve.kinks().into_iter().chain(section.breaks()).collect();
         let mut off = Self { strain: Vec::new(), curvature: Vec::new() };
         for (k, &s) in shape.s.iter().enumerate() {
             // Where something jumps the strain is a compromise, which others tell.
-            let jumps = is_twice(&shape.s, s)
-                || curve.kinks().iter().any(|kink| (kink - s).abs() <= same_place(&shape.s));
+            let jumps =
+                is_twice(&shape.s, s) || jumps.iter().any(|at| (at - s).abs() <= same_place(&shape.s));
             let inside = 0.5 * curve.length();
             let [axial, bending, coupling] =
                 [&section.axial_stiffness, &section.bending_stiffness, &section.coupling]
@@ -103,7 +109,8 @@ impl Off {
             let size =
                 |seen: f64, expected: Option<f64>| expected.map_or(0.0, |expected| (seen - expected).abs());
             off.strain.push(size(shape.strain[k], strain));
-            off.curvature.push(size(shape.curvature[k], bend.map(|bend| curve.curvature(s) + bend)));
+            let bent = size(shape.curvature[k], bend.map(|bend| curve.curvature(s) + bend));
+            off.curvature.push((bent - bending.map_or(0.0, |ei| unsure / ei)).max(0.0));
         }
         Some(off)
     }
@@ -196,7 +203,7 @@ mod tests {
         let scene = scene("static = {}");
         let mut arm = scene.model().beams[0].clone();
         arm.section.coupling = Some(Along::from(0.5));
-        let off = Off::of(&arm, &run().last[0]).expect("forces");
+        let off = Off::of(&arm, &run().last[0], 0.0).expect("forces");
         let near =
             |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found} {expected}");
         near(off.strain[0], 0.25 + (2.5 * 0.5 - 0.25) / 0.75);
@@ -211,6 +218,6 @@ mod tests {
             bending_moment: vec![0.0; 2],
             ..Shape::default()
         };
-        assert_eq!(Off::of(&green, &shape).expect("forces").strain, [0.0, 0.0]);
+        assert_eq!(Off::of(&green, &shape, 0.0).expect("forces").strain, [0.0, 0.0]);
     }
 }
