@@ -68,6 +68,8 @@ const HOPELESS_MOTION: f64 = 10.0;
 
 /// Positions of two equilibria, in beam lengths, beyond which they do not show the same shape.
 const APART: f64 = 0.1;
+/// Most Newton iterations of an equilibrium on a mesh that only tells errors.
+const MOST_OF_COARSE: usize = 50_000;
 
 /// What is solved, on which meshes and with which steps.
 pub(super) struct Runner<'a, 'o> {
@@ -423,7 +425,11 @@ impl<'a, 'o> Runner<'a, 'o> {
         // On the same meshes a coarser run tells nothing of how their errors fall.
         let beams = |mesh: Fineness| self.setting(mesh, mesh).beams;
         let tells = alone && beams(Fineness::Coarsest) != beams(Fineness::Coarse);
-        let mut pair = |fineness, purpose| self.solve(&stations, &self.setting(fineness, fineness), purpose);
+        // A coarse mesh may creep to an equilibrium that finer ones find at once, and is not waited for.
+        let most = if matches!(self.analysis, Analysis::Static(_)) { MOST_OF_COARSE } else { usize::MAX };
+        let mut pair = |fineness, purpose| {
+            self.solve_within(most, &stations, &self.setting(fineness, fineness), purpose)
+        };
         let coarsest = if tells { pair(Fineness::Coarsest, Purpose::Positions).ok() } else { None };
         let coarse = pair(Fineness::Coarse, Purpose::Shapes);
         let before = coarsest.as_ref().zip(coarse.as_ref().ok());

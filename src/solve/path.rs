@@ -137,6 +137,10 @@ const STILL: f64 = 1e-10;
 const LEAVES_TURN: f64 = 1e-4;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
+/// Steps below this part of the first one in succession, with longer ones that fail between them, …
+const CREEPING: f64 = 1e-5;
+/// … of which so many lead nowhere.
+const MOST_CREEPING: usize = 300;
 /// Part of a failed step that is tried next.
 const SHORTER: f64 = 0.4;
 /// Smallest step in place of one that is taken back, relative to the first one that was to be tried.
@@ -171,6 +175,9 @@ pub struct Path<'e, 'a> {
     points: Vec<Point>,
     step: f64,
     first_step: f64,
+    /// How many steps in succession were so short that they lead nowhere, and why the last longer one failed.
+    crept: usize,
+    refused: Option<(Failure, (usize, f64))>,
     /// The largest load factor that is of interest, or that was reached.
     loads: f64,
     /// Change of the load factor by which the structure yields by one beam length at first.
@@ -224,6 +231,8 @@ impl<'e, 'a> Path<'e, 'a> {
             points: vec![start],
             step,
             first_step: step,
+            crept: 0,
+            refused: None,
             loads,
             yields: f64::INFINITY,
             load_scale: loads,
@@ -368,8 +377,18 @@ impl<'e, 'a> Path<'e, 'a> {
                 failed => failed,
             };
             match corrected {
-                Ok((point, turn)) => return Ok(self.accept(point, step, turn)),
+                Ok((point, turn)) => {
+                    let creeps = self.parameter == Parameter::Load && step < CREEPING * self.first_step;
+                    self.crept = if creeps { self.crept + 1 } else { 0 };
+                    if self.crept > MOST_CREEPING
+                        && let Some((failure, at)) = self.refused
+                    {
+                        return Err(NoStep { load: self.last().load, step, failure, at });
+                    }
+                    return Ok(self.accept(point, step, turn));
+                }
                 Err((failure, at)) => {
+                    self.refused = Some((failure, at));
                     self.equilibrium.statistics.rejected_steps += 1;
                     self.step = step
                         * match failure {

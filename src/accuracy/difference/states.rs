@@ -22,6 +22,8 @@ const LEAST: (f64, f64) = (0.2, 0.1);
 
 /// Velocities, angles, strains and curvatures of so many records before and after tell of their errors, too.
 const NEAR_RECORDS: usize = 2;
+/// The part of what strains and curvatures err by there that they do at least.
+const OF_NEAR_RECORDS: f64 = 0.3;
 
 /// Errors of a record of which nothing is known.
 const UNKNOWN: ProbeSample = ProbeSample {
@@ -269,17 +271,20 @@ fn not_by_chance(seen: ProbeSample, coarse: &Shape, fine: &Shape, s: f64, beam: 
     }
 }
 
-/// Velocities, angles, strains and curvatures of a motion err by no less than they do in the records of these numbers that are near: their
-/// errors are waves of high frequency, and one record may see where they pass zero.
+/// Velocities and angles of a motion err by no less than they do in the records of these numbers that are near, strains and curvatures, whose
+/// errors change more from record to record, by no less than a part of that: they are waves of high frequency, and one record may see
+/// where they pass zero.
 fn also_before_and_after(samples: &mut [ProbeSample], known: &[usize]) {
     let seen: Vec<ProbeSample> = known.iter().filter_map(|j| samples.get(*j).copied()).collect();
     let most = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| larger(a, b));
+    // What is known beforehand does not err.
+    let least = |seen: f64, near: f64| if seen > 0.0 { larger(seen, OF_NEAR_RECORDS * near) } else { seen };
     for (k, j) in known.iter().enumerate() {
         let near = &seen[k.saturating_sub(NEAR_RECORDS)..(k + NEAR_RECORDS + 1).min(seen.len())];
         samples[*j] = near.iter().fold(samples[*j], |now, near| ProbeSample {
             angle: larger(now.angle, near.angle),
-            strain: larger(now.strain, near.strain),
-            curvature: larger(now.curvature, near.curvature),
+            strain: least(now.strain, near.strain),
+            curvature: least(now.curvature, near.curvature),
             vx: most(now.vx, near.vx),
             vy: most(now.vy, near.vy),
             ..now
@@ -462,9 +467,9 @@ mod tests {
             vy: Some(2.5),
         };
         assert_eq!((found.probes.len(), tip[0].x, tip[1], tip[2]), (1, 0.0, last, last));
-        // Velocities, angles and strains of a record near to one that errs may be those of a wave that passes zero; the angle errs by a
+        // Velocities and angles of a record near to one that errs may be those of a wave that passes zero; the angle errs by a
         // tenth of the largest one on the beam.
-        assert_eq!((tip[0].angle, tip[0].strain, tip[0].vx), (0.1 * (TAU - 5.0), 0.2, Some(2.5)));
+        assert_eq!((tip[0].angle, tip[0].strain, tip[0].vx), (0.1 * (TAU - 5.0), 0.0, Some(2.5)));
         assert_eq!(found.beams[0].position, [0.0, 0.0, 0.0, 0.0, 0.4]);
         assert_eq!(found.beams[0].curvature, [3.0, 2.0, 1.0, 4.0, 3.5]);
         assert_eq!(found.beams[1].curvature, [100.0, 0.0, 0.0]);
