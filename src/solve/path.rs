@@ -138,7 +138,7 @@ const LEAVES_TURN: f64 = 1e-4;
 /// Smallest step, relative to the first one that was to be tried.
 const SMALLEST_STEP: f64 = 1e-9;
 /// Steps below this part of the first one in succession, with longer ones that fail between them, …
-const CREEPING: f64 = 1e-5;
+const CREEPING: f64 = 1e-6;
 /// … of which so many lead nowhere.
 const MOST_CREEPING: usize = 300;
 /// Part of a failed step that is tried next.

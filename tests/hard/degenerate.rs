@@ -2,6 +2,7 @@
 //! panic, a hang, or a meaningless state with exit status 0.
 
 use ancf::results::Results;
+use ancf::run::RunError;
 use ancf::scene;
 
 /// A beam of 1 m with EI = 1, ρA = 1; what differs from scene to scene comes as tables of the scene
@@ -403,4 +404,26 @@ fn a_tendon_between_pins_holds_what_they_hold() {
             assert!(said.contains("a tendon") && said.contains("the support at"), "{said}");
         }
     }
+}
+
+/// A beam is pressed over the corner of a soft box, beyond which the box pushes it the other way: there is no equilibrium behind. Step after step
+/// near the shortest one succeeds there, and each longer one fails, which is said after some hundreds of them.
+#[test]
+fn paths_that_creep_end_with_a_reason() {
+    let scene = scene::parse(
+        "corner",
+        "beam.b = { start = [0, 0], end = [1, 0], axial_stiffness = 60780.0, bending_stiffness = 1.0, basis.ancf.elements = 40 }\n\
+         support = [{ beam = 'b', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+         effect.distributed_force = [{ beam = 'b', value = [0, -5.061] }]\n\
+         effect.contact = [{ beam = 'b', circle = { center = [0.5055, -0.1618], radius = 0.04273 }, stiffness = 1556.0, half_thickness = 0.002108 }, \
+         { beam = 'b', box = { center = [0.4705, -0.0858], size = [0.07503, 0.06206], angle = -0.3513 }, stiffness = 1597.0 }]\n\
+         analysis.static = {}\n",
+    )
+    .unwrap_or_else(|error| panic!("{error}"));
+    let Err(RunError::NoEquilibrium { load, partial, .. }) = scene.model().solve(scene.analysis()) else {
+        panic!("there is no equilibrium behind the corner")
+    };
+    assert!((0.580..0.583).contains(&load), "{load}");
+    let steps = partial.run.statistics.steps;
+    assert!((300..2000).contains(&steps), "{steps} steps");
 }
