@@ -8,13 +8,22 @@
 //!
 //! A strain on one layer alone, as heat imposes it on a bimetal, has the force N₀ = EA_l ε₀ and the
 //! moment M₀ = EB_l ε₀ with that layer's parts of EA and EB.
+//!
+//! Where the section couples stretch and bending, the elastic energy is that of the stretch ε + EB/EA κ of the neutral line, summed at the
+//! points for stretch, and that of bending about it, at those for bending ([`super::coupling`]). What is imposed is summed alike,
+//!
+//! ```text
+//! −N₀ (ε + EB/EA κ)   and   −(M₀ − EB/EA N₀) κ
+//! ```
+//!
+//! since N₀ and M₀ may each be far larger than what they do together, and would bend cells by what the points differ.
 
 use super::{Engineering, Green, Strain, bend};
 use crate::assembly::{
     Assembly, BuildError, Density, Extent, Gradient, Hessian, Imposed, Kind, Part, edges_along,
 };
 use crate::basis::Quadrature;
-use crate::beam::{Along, Place, Section, StrainMeasure};
+use crate::beam::{Along, Beam, Place, Section, StrainMeasure};
 use crate::lanes;
 use crate::law::Law;
 use nalgebra::{Matrix2, Vector2};
@@ -42,15 +51,6 @@ impl Part for Actuation {
         if !beam.section.is_linear() {
             return Err(lacks("stiffness that is a number"));
         }
-        let (stretch, bend) = (beam.gauss_points.stretch_rule(), beam.gauss_points.bend_rule());
-        if let Some(layer) = self.layer {
-            let stiffness = beam.section.layers.get(layer).and_then(|layer| layer.stiffness.as_ref());
-            let [axial, coupling] = stiffness.ok_or_else(|| lacks("layer of known stiffness"))?;
-            let Some(strain) = &self.strain else { return Ok(()) };
-            let force = axial.product(strain);
-            self.add_pre_strain(assembly, Kind::PreStrain, (beam.strain, stretch), &force)?;
-            return self.add_pre_curvature(assembly, bend, &coupling.product(strain));
-        }
         let Section { axial_stiffness, bending_stiffness, coupling, .. } = &beam.section;
         let product = |value: &Option<Along>, stiffness: &Option<Along>, name: &'static str| match value {
             None => Ok(None),
@@ -58,18 +58,20 @@ impl Part for Actuation {
                 stiffness.as_ref().map(|along| Some(along.product(value))).ok_or_else(|| lacks(name))
             }
         };
+        if let Some(layer) = self.layer {
+            let stiffness = beam.section.layers.get(layer).and_then(|layer| layer.stiffness.as_ref());
+            let [axial, coupling] = stiffness.ok_or_else(|| lacks("layer of known stiffness"))?;
+            let Some(strain) = &self.strain else { return Ok(()) };
+            let [force, moment] = [axial, coupling].map(|stiffness| Some(stiffness.product(strain)));
+            return self.add_imposed(assembly, Kind::PreStrain, beam, [force, moment]);
+        }
         let coupled =
             |value: &Option<Along>| coupling.as_ref().zip(value.as_ref()).map(|(b, v)| b.product(v));
-        if let Some(force) = product(&self.strain, axial_stiffness, "axial stiffness")? {
-            self.add_pre_strain(assembly, Kind::PreStrain, (beam.strain, stretch), &force)?;
-        }
-        // What the section couples belongs to bending: −EB κ₀ ε and −EB ε₀ κ.
-        if let Some(force) = coupled(&self.curvature) {
-            self.add_pre_strain(assembly, Kind::PreCurvature, (beam.strain, stretch), &force)?;
-        }
-        let moments =
-            [product(&self.curvature, bending_stiffness, "bending stiffness")?, coupled(&self.strain)];
-        moments.into_iter().flatten().try_for_each(|moment| self.add_pre_curvature(assembly, bend, &moment))
+        let force = product(&self.strain, axial_stiffness, "axial stiffness")?;
+        let moment = product(&self.curvature, bending_stiffness, "bending stiffness")?;
+        self.add_imposed(assembly, Kind::PreStrain, beam, [force, coupled(&self.strain)])?;
+        // What the section couples belongs to bending: −EB κ₀ ε.
+        self.add_imposed(assembly, Kind::PreCurvature, beam, [coupled(&self.curvature), moment])
     }
 
     fn fades(&self) -> bool {
@@ -89,6 +91,30 @@ impl Part for Actuation {
 }
 
 impl Actuation {
+    /// Adds −∫ (N₀ ε + M₀ κ) ds, the first as energy of this kind.
+    fn add_imposed(
+        &self,
+        assembly: &mut Assembly<'_>,
+        kind: Kind,
+        beam: &Beam,
+        [force, moment]: [Option<Along>; 2],
+    ) -> Result<(), BuildError> {
+        let (stretch, bend) = (beam.gauss_points.stretch_rule(), beam.gauss_points.bend_rule());
+        if let Some(force) = &force {
+            self.add_pre_strain(assembly, kind, (beam.strain, stretch), force)?;
+        }
+        let lever = beam.section.coupling.as_ref().zip(beam.section.axial_stiffness.as_ref());
+        let of_stretch =
+            force.zip(lever).map(|(force, (coupling, axial))| force.product(&coupling.over(axial)));
+        let Some(of_stretch) = of_stretch else {
+            return moment.map_or(Ok(()), |moment| self.add_pre_curvature(assembly, bend, &moment));
+        };
+        self.add_pre_curvature(assembly, stretch, &of_stretch)?;
+        let back = of_stretch.times(-1.0);
+        let of_bending = moment.map_or_else(|| back.clone(), |moment| moment.plus(&back));
+        self.add_pre_curvature(assembly, bend, &of_bending)
+    }
+
     /// Adds −∫ M₀ κ ds.
     fn add_pre_curvature(
         &self,

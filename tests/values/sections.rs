@@ -313,6 +313,34 @@ fn a_bimetal_bends_as_timoshenko_said() {
     }
 }
 
+/// Of a strip of two layers one is heated between 0.2 and 0.8 of its length. Nothing holds it, so that the force and the moment of the heat, either
+/// of which is far more than what bends the strip, give it a strain and a curvature there, and its tip lies at the end of an arc. Cells
+/// that bend through a quarter of a right angle follow.
+#[test]
+fn a_heated_layer_bends_long_cells_as_it_should() {
+    let (width, heat) = (0.01, 0.004);
+    let (heights, moduli) = ([0.0004, 0.0011], [70e9, 3e9]);
+    let bottom = -0.5 * (heights[0] + heights[1]);
+    let layer = |modulus: f64, [a, b]: [f64; 2]| {
+        let of = |power: i32, factor: f64| factor * modulus * width * (b.powi(power) - a.powi(power));
+        [of(1, 1.0), of(2, -0.5), of(3, 1.0 / 3.0)]
+    };
+    let heated = layer(moduli[0], [bottom, bottom + heights[0]]);
+    let other = layer(moduli[1], [bottom + heights[0], -bottom]);
+    let [ea, eb, ei] = [0, 1, 2].map(|k| heated[k] + other[k]);
+    let both = ea * ei - eb * eb;
+    let strain = heat * (ei * heated[0] - eb * heated[1]) / both;
+    let curvature = heat * (ea * heated[1] - eb * heated[0]) / both;
+    let (turn, radius) = (0.6 * curvature, (1.0 + strain) / curvature);
+    let tip = [0.2 + radius * turn.sin() + 0.2 * turn.cos(), radius * (1.0 - turn.cos()) + 0.2 * turn.sin()];
+    let section = "section.layers = [{ width = 0.01, height = 0.0004, youngs_modulus = 70e9 }, { width = 0.01, height = 0.0011, youngs_modulus = 3e9 }]";
+    let load = "effect.actuation = [{ beam = 'arm', layer = 1, strain = 0.004, from = 0.2, to = 0.8 }]";
+    for (elements, allowed) in [(5, 1e-2), (10, 1.5e-3), (20, 2e-4)] {
+        let found = Written::of(&arm(section, load, &format!("ancf.elements = {elements}")));
+        found.ends("probes.csv", &[("tip.x", tip[0]), ("tip.y", tip[1])], allowed);
+    }
+}
+
 /// A column of EI = (1 + s/4)² on hinges: with z = 1 + s/4 its shape is √z sin(β ln z), β = nπ/ln 1.25,
 /// under P = (β² + ¼)/16.
 #[test]
