@@ -425,8 +425,9 @@ impl<'a, 'o> Runner<'a, 'o> {
         // On the same meshes a coarser run tells nothing of how their errors fall.
         let beams = |mesh: Fineness| self.setting(mesh, mesh).beams;
         let tells = alone && beams(Fineness::Coarsest) != beams(Fineness::Coarse);
-        // A coarse mesh may creep to an equilibrium that finer ones find at once, and is not waited for.
-        let most = if matches!(self.analysis, Analysis::Static(_)) { MOST_OF_COARSE } else { usize::MAX };
+        // A coarse mesh may creep to an equilibrium that finer ones find at once, and is not waited for. A path has as many points as it has.
+        let creeps = matches!(self.analysis, Analysis::Static(_)) && !difference::is_path(self.analysis);
+        let most = if creeps { MOST_OF_COARSE } else { usize::MAX };
         let mut pair = |fineness, purpose| {
             self.solve_within(most, &stations, &self.setting(fineness, fineness), purpose)
         };

@@ -9,8 +9,8 @@
 //!
 //! with the curvature κ₀ of the curve along which the beam is laid out. Those of the shape functions, which are derivatives, differ from
 //! these by their own error, and moments, which forces make with positions as levers, by what those are off; of taut beams this is all there
-//! is. Where errors fall as the method promises, two meshes tell it by a third of their difference. At
-//! the edge of a contact, beside a stiff spring and in a layer they do not, and what is beyond that third is found here.
+//! is. Where errors fall as the method promises, two meshes differ by three times as much. At the edge of a contact, beside a stiff
+//! spring and in a layer they may agree by chance, and differ at least by what the finer one is off.
 
 use super::places::{interpolated, is_twice, same_place};
 use super::{Difference, larger};
