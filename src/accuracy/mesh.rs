@@ -70,14 +70,11 @@ fn fixed(model: &Model, beam: usize, length: f64) -> Vec<f64> {
     // Meshfree nodes that are close amplify round-off.
     let meshfree = matches!(model.beams[beam].discretization, Discretization::Rpim { .. });
     let edges = if meshfree { Vec::new() } else { model.edges(beam) };
-    let edges_of = |resist: bool| -> Vec<f64> {
-        let parts = model.parts.iter().filter(|part| part.resists().is_empty() != resist);
-        parts.flat_map(|part| part.edges()).filter_map(here).collect()
-    };
-    let points_of = |resist: bool| -> Vec<f64> {
-        let parts = model.parts.iter().filter(|part| part.resists().is_empty() != resist);
-        parts.filter_map(|part| here(part.point()?)).collect()
-    };
+    let parts = |resist: bool| model.parts.iter().filter(move |part| part.resists().is_empty() != resist);
+    let edges_of =
+        |resist: bool| -> Vec<f64> { parts(resist).flat_map(|part| part.edges()).filter_map(here).collect() };
+    let points_of =
+        |resist: bool| -> Vec<f64> { parts(resist).filter_map(|part| here(part.point()?)).collect() };
     let [of_loads, of_others] = [false, true].map(edges_of);
     let mut needed = model.breaks(beam);
     needed.extend(edges.iter().filter(|s| !of_loads.contains(s) || of_others.contains(s)));

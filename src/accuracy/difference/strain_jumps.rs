@@ -46,12 +46,12 @@ pub(in crate::accuracy) fn strain_jumps(
     for (index, ((beam, nodes), shape)) in model.beams.iter().zip(nodes).zip(&run.last).enumerate() {
         let length = nodes.last().copied().unwrap_or(0.0);
         let softer = stiffness_jumps(model, index, length);
-        let held = each_once(fixed_gradients(model, index).collect(), length);
-        let is_held = |s: f64| held.iter().any(|other| (s - other).abs() <= SAME * length);
+        let fixed = each_once(fixed_gradients(model, index).collect(), length);
+        let is_fixed = |s: f64| fixed.iter().any(|other| (s - other).abs() <= SAME * length);
         let jumps_at = within(points(model, index).chain(model.breaks(index)), length);
-        let jumps_at = jumps_at.into_iter().filter(|s| !is_held(*s));
+        let jumps_at = jumps_at.into_iter().filter(|s| !is_fixed(*s));
         let jumps_at = jumps_at.map(|s| (s, at(model, beam, index, shape, (s, length)), false));
-        let held_at = held.iter().map(|s| (*s, held_back(model, beam, index, shape, (*s, length)), true));
+        let held_at = fixed.iter().map(|s| (*s, held_back(model, beam, index, shape, (*s, length)), true));
         for (s, [along, turn], held) in jumps_at.chain(held_at) {
             if along.is_nan() || along <= ROUND_OFF {
                 continue;
