@@ -173,6 +173,9 @@ impl Tabulated {
 const SLOW: f64 = 1.5;
 /// Change of the moments of an expression by twice as many parts that counts as none, in its largest value.
 const SETTLED: f64 = 1e-11;
+/// Change of the moments that counts as none whatever the value: smaller numbers have fewer digits than others, so that the tail of a
+/// pulse would never settle.
+pub const VANISHED: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 /// Change of a value at a kink that counts as a jump, in the largest of the value v, v' t and v'' t².
 const JUMP: f64 = 1e-12;
 /// Most parts in which a product of fast laws is integrated.
@@ -384,7 +387,7 @@ impl Law {
             let (sums, largest) = self.in_equal_parts(start, h, parts);
             let change = (sums[0] - before[0]).abs().max((sums[1] - before[1]).abs());
             // A law that is not a number anywhere is none in its sums either.
-            if change.is_nan() || change <= SETTLED * largest || parts as f64 >= MOST_PARTS {
+            if change.is_nan() || change <= VANISHED.max(SETTLED * largest) || parts as f64 >= MOST_PARTS {
                 return (sums, parts);
             }
             // A difference of nearly equal numbers, as 1 - cos(t) is at first, never settles so far.
@@ -600,6 +603,16 @@ mod tests {
         let law = written("cos(1e3*t)", Vec::new());
         let [mean, _] = law.in_parts(0.0, 1.0).0;
         assert!((mean - 1e-3 * 1e3_f64.sin()).abs() < 1e-12);
+    }
+
+    /// Far from its middle a pulse is so small that its values have hardly a digit left.
+    #[test]
+    fn the_tail_of_a_pulse_is_not_integrated_any_finer() {
+        let law = written("10*exp(-((t-0.2)/0.003)^2)", Vec::new());
+        for i in 0..100 {
+            let (_, parts) = law.in_parts(0.2 + 2e-3 * f64::from(i), 2e-3);
+            assert!(parts <= 1 << 10, "{parts} parts from {} s", 0.2 + 2e-3 * f64::from(i));
+        }
     }
 
     #[test]

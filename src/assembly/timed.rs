@@ -3,7 +3,7 @@
 use super::assemble::fields;
 use super::weighted::{Weighted, scaled};
 use super::{Actions, Density, Gradient, Hessian, Integral, Kind, Workspace};
-use crate::law::Law;
+use crate::law::{Law, VANISHED};
 use crate::linear::Matrix;
 use crate::numeric::GAUSS_6;
 use nalgebra::Vector2;
@@ -187,7 +187,7 @@ impl<D: TimedDensity<M>, const M: usize> TimedLoad for TimedIntegral<D, M> {
             let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             (before, parts) = (sums, 2 * parts);
             // What is not a number anywhere is none in its sums either.
-            if change <= SETTLED * largest || !change.is_finite() || parts > MOST_PARTS {
+            if change <= VANISHED.max(SETTLED * largest) || !change.is_finite() || parts > MOST_PARTS {
                 break;
             }
         }
