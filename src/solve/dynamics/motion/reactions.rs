@@ -66,8 +66,13 @@ impl Balance {
 
 /// ω h beyond which a vibration is too fast for steps of length h.
 const FAST: f64 = 4.0;
-/// How often a state is moved; before the second time the accelerations are freed of what strains.
+/// How often a state is moved at least; before the second time the accelerations are freed of what strains.
 const PASSES: usize = 2;
+/// How often it is moved at most: again …
+const MOST_PASSES: usize = 5;
+/// … where the last change, in beam lengths or of a gradient, was larger than this: the square of it, times the stretching stiffness,
+/// is what forces still lack.
+const SETTLED: f64 = 1e-7;
 /// Change of a gradient, or of a position in beam lengths, over which a tangent is differenced.
 const DIFFERENCE: f64 = 1e-4;
 
@@ -116,10 +121,10 @@ impl Motion<'_> {
         let state = self.unknowns_of(state).into_owned();
         let mut stage = StageState { state, rates };
         let (d, c) = (FAST / h, (FAST / h).powi(2));
-        for pass in 0..PASSES {
+        for pass in 0..MOST_PASSES {
             self.tangent_at(&stage.state, &stage.rates[n..]);
             let factor = self.factorize(c, d, None)?;
-            if pass > 0 {
+            if pass == 1 {
                 let mut change = self.rate_of_rates(&stage);
                 self.constraint_defects(&stage, 1.0, &mut change[n..]);
                 factor.solve(&mut change);
@@ -138,12 +143,16 @@ impl Motion<'_> {
             let StageState { state, rates } = &mut stage;
             factor.solve(&mut change);
             self.from_frames(&mut change);
+            let size = self.size(&change[..n]);
             for (i, change) in change[..n].iter().enumerate() {
                 state.q[i] += change;
                 state.v[i] += d * change;
                 rates[i] += c * change;
             }
             rates[n..].iter_mut().zip(&change[n..]).for_each(|(mu, change)| *mu += change);
+            if pass + 1 >= PASSES && (size.is_nan() || size <= SETTLED) {
+                break;
+            }
         }
         Ok(self.balance_of(stage))
     }
