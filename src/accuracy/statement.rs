@@ -13,16 +13,17 @@ const FOUND: f64 = 1e-7;
 const LEAST: f64 = 0.2;
 
 /// Errors oscillate, and a moment at which two runs agree by chance is no better than those around
-/// it: the largest within a twentieth of the run on either side.
+/// it: the largest within a twentieth of the run on either side, and at its end within the last tenth.
 pub(super) fn of_probe(mut probe: ProbeErrors) -> ProbeErrors {
     let reach = probe.samples.len() / WINDOW;
+    let of_last = probe.samples.len().saturating_sub(2 * reach + 1);
     let around: Vec<ProbeSample> = (0..probe.samples.len())
         .map(|i| {
             let last = (i + reach).min(probe.samples.len() - 1);
             if probe.samples[i].x.is_nan() {
                 return probe.samples[i];
             }
-            probe.samples[i.saturating_sub(reach)..=last].iter().fold(
+            probe.samples[i.saturating_sub(reach).min(of_last)..=last].iter().fold(
                 ProbeSample::default(),
                 |most, sample| {
                     let of = |a: Option<f64>, b: Option<f64>| b.map(|b| a.map_or(b, |a| a.max(b)));
@@ -183,7 +184,7 @@ mod tests {
         let mut samples = vec![ProbeSample { vx: Some(0.0), ..ProbeSample::default() }; 40];
         samples[10] =
             ProbeSample { x: 4.0, y: 6.0, angle: 8.0, curvature: 9.0, strain: 12.0, vx: Some(2.0), vy: None };
-        samples[39].y = 10.0;
+        samples[36].y = 10.0;
         samples[20].x = f64::NAN;
         let found = of_probe(ProbeErrors { name: "tip".into(), samples }).samples;
         let x = |value: f64| found.iter().enumerate().filter(move |(_, s)| s.x == value).map(|(i, _)| i);
@@ -191,7 +192,8 @@ mod tests {
         let around =
             ProbeSample { x: 4.0, y: 6.0, angle: 8.0, curvature: 9.0, strain: 12.0, vx: Some(2.0), vy: None };
         assert_eq!((found[8], found[12]), (around, around));
-        assert_eq!([36, 37, 38, 39].map(|i| found[i].y), [0.0, 10.0, 10.0, 10.0]);
+        // At the end four before it do.
+        assert_eq!([33, 34, 37, 38, 39].map(|i| found[i].y), [0.0, 10.0, 10.0, 10.0, 10.0]);
         assert!(found[20].x.is_nan() && found[19].x == 0.0, "of a record nothing may be known");
     }
 
