@@ -243,7 +243,7 @@ fn see(results: &Results, frame: &Frame) -> Seen {
     let rate = frame.unit([0, 0, -1]);
     let unit = if t.run.analysis == ancf::results::AnalysisKind::Modal { rate } else { 1.0 };
     let told = t.run.error.as_ref();
-    let events: Vec<_> = t.events.iter().enumerate().filter(|(_, event)| has_time(event)).collect();
+    let events: Vec<_> = t.events.iter().enumerate().filter(|(_, event)| has_time(event, &t.last)).collect();
     Seen {
         moves: t.run.analysis == ancf::results::AnalysisKind::Dynamic,
         before: Vec::new(),
@@ -270,10 +270,23 @@ fn see(results: &Results, frame: &Frame) -> Seen {
 }
 
 /// Whether an event has a time that more than round-off decides on: not so a turn of a strain that is zero but for the errors of a mesh, as at
-/// a free end.
-fn has_time(event: &Event) -> bool {
+/// a free end, or of a moment that is nothing beside those in the beams, as where a wave has not arrived yet.
+fn has_time(event: &Event, last: &[Shape]) -> bool {
     const NOTHING: f64 = 1e-9;
-    !matches!(event, Event::Probe { quantity: "strain", turns: Some(_), value, .. } if value.abs() < NOTHING)
+    const OF_LARGEST: f64 = 1e-5;
+    let Event::Probe { quantity, turns: Some(_), value, .. } = event else { return true };
+    let most = |of: fn(&Shape) -> &[f64]| {
+        last.iter().flat_map(of).fold(0.0_f64, |most, value| most.max(value.abs()))
+    };
+    let least = match *quantity {
+        "strain" => NOTHING,
+        "curvature" => OF_LARGEST * most(|shape| &shape.curvature),
+        "axial_force" => OF_LARGEST * most(|shape| &shape.axial_force),
+        "shear_force" => OF_LARGEST * most(|shape| &shape.shear_force),
+        "bending_moment" => OF_LARGEST * most(|shape| &shape.bending_moment),
+        _ => return true,
+    };
+    value.abs() >= least
 }
 
 fn samples(samples: &[ProbeSample], frame: &Frame) -> Vec<Sample> {
