@@ -22,7 +22,7 @@
 
 use super::equilibrium::Equilibrium;
 use super::newton::{self, Failure, Iterations, ROUND_OFF, Settings};
-use crate::assembly::Earlier;
+use crate::assembly::{Earlier, Kind};
 use crate::solve::Statistics;
 use crate::system::System;
 
@@ -201,11 +201,12 @@ fn creep(
     Err(Failure::TooSlow { iterations: ITERATIONS, last: size })
 }
 
-/// The size of the loads \[N\] at a load factor in a state; infinite where there are none, but for moving supports.
+/// The size of the loads \[N\] at a load factor in a state, and of the forces of springs; infinite where there are none, but for moving
+/// supports.
 fn loads(system: &System, load: f64, q: &[f64]) -> f64 {
     let mut forces = vec![0.0; q.len()];
     system.add_load_rate(1.0, load, q, &mut forces);
-    let size = load * system.norm(&forces);
+    let size = load * system.norm(&forces) + system.internal_force(q, |kind| kind == Kind::Spring);
     if size > 0.0 { size } else { f64::INFINITY }
 }
 

@@ -20,6 +20,7 @@ use crate::assembly::{
     Workspace, nodes, remaining,
 };
 use crate::linear::Matrix;
+use crate::numeric::GOLDEN;
 use std::ops::Range;
 
 /// Forces above this many round-offs of the internal forces count.
@@ -200,10 +201,21 @@ impl System {
     }
 
     /// Norm of the forces of effects of these `kinds` on what is free in the state in which an analysis
-    /// begins, without any load \[N\]; 0 where it is round-off.
+    /// begins, without any load \[N\]; 0 where it is round-off: what these effects, and no others, make of that of the coordinates.
     pub fn force_at_start(&self, kinds: &[Kind]) -> f64 {
-        let force = self.internal_force(self.start(), |kind| kinds.contains(&kind));
-        Some(force).filter(|norm| *norm > STRESSED * self.round_off).unwrap_or(0.0)
+        let q = self.start();
+        let units = [self.length, self.length, 1.0, 1.0].into_iter().cycle();
+        // Of all signs and sizes, so that neither a spring along an axis nor one between two nodes sees none of it.
+        let part = |i: usize| 2.0 * (i as f64 * GOLDEN).fract() - 1.0;
+        let off: Vec<f64> = (q.iter().zip(units).enumerate())
+            .map(|(i, (q, unit))| f64::EPSILON * unit.max(q.abs()) * part(i))
+            .collect();
+        let mut round_off = vec![0.0; self.coordinates()];
+        for effect in self.terms.internal.iter().filter(|effect| kinds.contains(&effect.kind())) {
+            effect.add_tangent_product(1.0, q, &off, &mut round_off);
+        }
+        let force = self.internal_force(q, |kind| kinds.contains(&kind));
+        if force > STRESSED * self.norm(&round_off) { force } else { 0.0 }
     }
 
     /// Norm of the internal forces of effects of some kinds on what is free in the state `q` \[N\], round-off included.

@@ -380,6 +380,29 @@ fn a_spring_elsewhere_does_not_hold_what_hangs() {
 
 /// A tendon along a straight string between two pins has the length that they give it: its tension is not
 /// determined, in whatever units and direction.
+/// A spring that is stretched from the start pulls with less than what the round-off of positions would make of two short cells, and still moves
+/// a beam that has them as it does one of even cells.
+#[test]
+fn a_stretched_spring_acts_beside_short_cells() {
+    const SHORT: &str =
+        "ancf = { nodes = [0, 0.1, 0.199995, 0.2, 0.200005, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1] }";
+    let effects =
+        "[[effect.spring]]\nbeam = 'arm'\nat = 0.8\nanchor = [0.6, 0.45]\nlength = 0.42\nstiffness = 60\n
+        [[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [0.0, -1.0]";
+    let tip = |basis| tip(&Scene { basis, effects, ..PLAIN }.solved());
+    let even = tip("ancf = { elements = 40 }");
+    let short = tip(SHORT);
+    let apart = (short[0] - even[0]).hypot(short[1] - even[1]);
+    assert!(even[1] > 0.05 && apart < 1e-6, "{apart:.1e} of {}", even[1]);
+    // Critical loads are asked for of a state which it presses already.
+    let effects =
+        "[[effect.spring]]\nbeam = 'arm'\nat = 'end'\nanchor = [-9, 0]\nlength = 9.9\nstiffness = 10\n
+        [[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [-1.0, 0.0]";
+    for basis in ["ancf = { elements = 20 }", SHORT] {
+        Scene { basis, effects, analysis: "buckling = {}", ..PLAIN }.refused(&["springs that pull"]);
+    }
+}
+
 #[test]
 fn a_tendon_between_pins_holds_what_they_hold() {
     for unit in [1e-6, 1.0, 1e3] {
