@@ -120,6 +120,7 @@ fn drift_is_the_largest_departure_of_the_total() {
     assert_eq!(found, Some(0.5));
     assert_eq!(drift(vec![energy(0.25, 0.5), energy(0.5, 0.25)]), Some(0.0));
     assert_eq!(drift(vec![energy(0.0, 0.5), energy(0.0, 0.25)]), None);
+    assert_eq!(drift(vec![energy(1e-17, 0.5), energy(0.0, 0.5 + 1e-16)]), None, "at rest but for round-off");
     assert_eq!(drift(Vec::new()), None);
 }
 
