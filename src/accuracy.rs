@@ -45,14 +45,16 @@ mod round;
 mod saturation;
 mod search;
 pub(crate) mod setting;
+mod stages;
 mod statement;
 
-use crate::model::{About, Accuracy, Analysis, Model, Open, Place};
+use crate::model::{About, Accuracy, Analysis, Model, Open, Place, Stage};
 use crate::results::{LazyText, Results};
-use crate::run::{Options, RunError, StagesRun, solve_stages};
+use crate::run::{Options, RunError, StagesRun, solve_stages, solve_stages_by};
 use crate::scene::Scene;
 use round::{Fineness, Runner};
 use search::Search;
+use stages::Starts;
 
 /// Accuracy of the equilibrium that tells where nodes must be.
 const PLACES: f64 = 1e-4;
@@ -87,11 +89,7 @@ impl Accurate {
 /// As [`solve`].
 pub fn run(scene: &Scene, options: Options<'_>) -> Result<Results, RunError> {
     if !scene.stages().is_empty() {
-        let StagesRun { mut results, failure } = solve_stages(scene.stages(), options);
-        return match (failure, results.pop()) {
-            (None, Some(last)) => Ok(last),
-            (failure, _) => Err(failure.unwrap_or(RunError::Stages)),
-        };
+        return solve_stages(scene.stages(), options).last();
     }
     let Some(wanted) = scene.accuracy() else {
         return scene.model().solve_with(scene.analysis(), options);
@@ -195,4 +193,18 @@ fn stiffness_jumps(
 pub fn estimate(model: &Model, analysis: &Analysis, options: Options<'_>) -> Result<Results, RunError> {
     let open = Open::none(model);
     Ok(Search::new(Runner::new(model, analysis, &open, None, options)).run()?.results)
+}
+
+/// [`solve_stages`], with the errors of every stage estimated as [`estimate`] does: by runs of all of them on half as many cells with
+/// larger steps, so that the error with which a stage begins is part of that of its results.
+pub fn estimate_stages(stages: &[Stage], options: Options<'_>) -> StagesRun {
+    let mut starts = Starts::new(options.start.cloned());
+    solve_stages_by(stages, options, &mut |index, model, analysis, mut options| {
+        let open = Open::none(model);
+        let mut runner = Runner::new(model, analysis, &open, None, options.again());
+        runner.starts = Some(&mut starts);
+        let results = Search::new(runner).run()?.results;
+        starts.go_on(&stages[index]);
+        Ok(results)
+    })
 }

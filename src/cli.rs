@@ -163,7 +163,7 @@ fn load(path: &Path, overrides: &Overrides) -> Result<Scene, Failure> {
 fn solve(arguments: &RunArguments) -> Result<(), Failure> {
     let mut scene = load(&arguments.scene, &arguments.overrides)?;
     let in_stages = !scene.stages().is_empty();
-    if in_stages && (arguments.accuracy.is_some() || arguments.error) {
+    if in_stages && arguments.accuracy.is_some() {
         return Err(Failure::run(scene.name(), RunError::Stages));
     }
     if let Some(error) = &arguments.accuracy {
@@ -198,7 +198,10 @@ fn solve(arguments: &RunArguments) -> Result<(), Failure> {
         ..run::Options::default()
     };
     if in_stages {
-        let run = run::solve_stages(scene.stages(), options);
+        let run = match arguments.error {
+            true => accuracy::estimate_stages(scene.stages(), options),
+            false => run::solve_stages(scene.stages(), options),
+        };
         progress.clear();
         return finish_stages(arguments, &scene, run, &wanted, destination);
     }

@@ -28,6 +28,7 @@ mod velocities;
 pub use error::RunError;
 pub(crate) use laws::stiffness_jumps;
 pub use shapes::shapes_at;
+pub(crate) use stages::solve_stages_by;
 pub use stages::{StagesRun, inspect_stages, model_of_stage, solve_stages};
 
 use crate::assembly::Needs;

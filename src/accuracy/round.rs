@@ -7,6 +7,7 @@ use super::judgement::{excess, scaled};
 use super::mesh::Mesh;
 use super::saturation::{ends_prevail, has_uneven_cells, saturates};
 use super::setting::{Family, Setting, Solver};
+use super::stages::Starts;
 use crate::basis::Basis;
 use crate::centreline::Curve;
 use crate::model::{
@@ -78,6 +79,8 @@ pub(super) struct Runner<'a, 'o> {
     pub open: &'a Open,
     pub wanted: Option<Accuracy>,
     pub options: Options<'o>,
+    /// Where other runs than those of the results begin, in a stage behind others.
+    pub starts: Option<&'o mut Starts>,
     /// Of the coarse runs.
     pub meshes: Vec<Mesh>,
     /// What open beams are made of.
@@ -247,6 +250,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             open,
             wanted,
             options,
+            starts: None,
             meshes,
             families,
             named,
@@ -375,7 +379,13 @@ impl<'a, 'o> Runner<'a, 'o> {
         let has_corners = self.has_corners();
         let wanted = self.wanted.is_some_and(|w| w.curvature.is_some() || w.section_force.is_some());
         let modes = matches!(self.analysis, Analysis::Modal(_) | Analysis::Buckling(_));
-        let (options, all) = (self.options.again(), purpose == Purpose::Results);
+        let all = purpose == Purpose::Results;
+        let other = match &mut self.starts {
+            Some(starts) if !all => Some(starts.of(&setting.beams)?),
+            _ => None,
+        };
+        let options = self.options.again();
+        let start = other.as_ref().map_or(options.start, Option::as_ref);
         let shape_points = match purpose {
             _ if wanted => options.shape_points,
             Purpose::Positions | Purpose::Shapes if modes => {
@@ -394,15 +404,19 @@ impl<'a, 'o> Runner<'a, 'o> {
             None => Control::Continue,
         };
         let options = Options {
+            start,
             observer: Some(&mut watch),
             states: (options.states || has_corners) && all,
             frames: if all { options.frames } else { 0 },
             shape_points,
             stations,
-            saved: options.saved && all,
+            saved: options.saved && (all || other.is_some()),
             ..options
         };
         let results = model.solve_with(&analysis, options)?;
+        if let Some(starts) = &mut self.starts {
+            starts.keep(&setting.beams, results.states().saved.as_ref());
+        }
         let run = results.run();
         let cells: usize = setting.beams.iter().map(|(beam, _)| beam.nodes().count().saturating_sub(1)).sum();
         self.runs.push(RunForError {

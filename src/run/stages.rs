@@ -20,6 +20,20 @@ pub struct StagesRun {
     pub failure: Option<RunError>,
 }
 
+impl StagesRun {
+    /// The results of the last stage.
+    ///
+    /// # Errors
+    /// [`RunError`], of the stage that failed.
+    pub fn last(self) -> Result<Results, RunError> {
+        let Self { mut results, failure } = self;
+        match (failure, results.pop()) {
+            (None, Some(last)) => Ok(last),
+            (failure, _) => Err(failure.unwrap_or(RunError::Stages)),
+        }
+    }
+}
+
 /// The model of a stage as it is built: joints of a stage that goes on may be open when it starts.
 pub fn model_of_stage(stages: &[Stage], index: usize) -> (Model, &Analysis) {
     let Stage { model, analysis, .. } = &stages[index];
@@ -91,7 +105,16 @@ fn gone(acted: &[Arc<dyn Part>], model: &Model, tensions: &[f64]) -> Vec<Arc<dyn
 /// before them ended: motions at rest after statics, and with its velocities after a motion. In
 /// statics what is new grows with the load factor, and what has gone fades. Vibrations leave the
 /// state as it was.
-pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
+pub fn solve_stages(stages: &[Stage], options: Options<'_>) -> StagesRun {
+    solve_stages_by(stages, options, &mut |_, model, analysis, options| model.solve_with(analysis, options))
+}
+
+/// [`solve_stages`], each stage by `solve`, which takes its number, its model with what fades there, its analysis and what it starts from.
+pub(crate) fn solve_stages_by(
+    stages: &[Stage],
+    mut options: Options<'_>,
+    solve: &mut dyn FnMut(usize, &Model, &Analysis, Options<'_>) -> Result<Results, RunError>,
+) -> StagesRun {
     let mut run = StagesRun { results: Vec::with_capacity(stages.len()), failure: None };
     let mut reached: Option<SavedState> = None;
     // The parts that have acted in the state that was reached.
@@ -117,7 +140,7 @@ pub fn solve_stages(stages: &[Stage], mut options: Options<'_>) -> StagesRun {
         } else {
             Cow::Owned(Model { fading, ..model.clone() })
         };
-        match model.solve_with(analysis, here) {
+        match solve(index, &model, analysis, here) {
             Ok(results) => {
                 let complete = results.run().complete;
                 let saved = results.states().saved.clone();

@@ -5,6 +5,7 @@ mod chosen;
 mod files;
 mod friction;
 mod refused;
+mod stages;
 mod worth;
 
 use ancf::results::{ErrorEstimate, ProbeSample, Results};

@@ -84,7 +84,7 @@ pub fn solve(py: Python<'_>, scene: &ancf::Scene, forces: &[PythonForce], run: R
     // The results are those of the last stage.
     let mut analysis =
         scene.stages().last().map_or_else(|| scene.analysis(), |stage| &stage.analysis).clone();
-    if !scene.stages().is_empty() && (duration.is_some() || estimate) {
+    if !scene.stages().is_empty() && duration.is_some() {
         return Err(PyValueError::new_err("this scene has stages, and this takes one analysis"));
     }
     match (&mut analysis, duration) {
@@ -146,6 +146,9 @@ pub fn solve(py: Python<'_>, scene: &ancf::Scene, forces: &[PythonForce], run: R
         };
         match () {
             () if duration.is_some() => scene.model().solve_with(&analysis, options),
+            () if estimate && !scene.stages().is_empty() => {
+                accuracy::estimate_stages(scene.stages(), options).last()
+            }
             () if estimate && scene.accuracy().is_none() => {
                 accuracy::estimate(scene.model(), scene.analysis(), options)
             }
