@@ -119,7 +119,7 @@ pub fn solve(system: &System, count: usize) -> Result<Modes, EigenError> {
     let pairs =
         largest_reciprocals(&pencil, count, GUARD).or_else(|_| largest_reciprocals(&pencil, count, 0));
     // The stress-free state is stable: what is said against it is the round-off of its stiffness.
-    let stress_free = !system.is_taken_up() && system.force_at_start(STRESSING) == 0.0;
+    let stress_free = !system.is_taken_up() && !system.is_stressed_at_start(STRESSING);
     let (mut turn, mut strain) = (0.0_f64, 0.0_f64);
     for (rate, node) in nodes(&rate[..n]).zip(nodes(q)) {
         let ([x, y], [dx, dy]) = (node.gradient, rate.gradient);

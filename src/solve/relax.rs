@@ -206,7 +206,8 @@ fn creep(
 fn loads(system: &System, load: f64, q: &[f64]) -> f64 {
     let mut forces = vec![0.0; q.len()];
     system.add_load_rate(1.0, load, q, &mut forces);
-    let size = load * system.norm(&forces) + system.internal_force(q, |kind| kind == Kind::Spring);
+    let size = load * system.norm(&forces)
+        + system.internal_force(q, |kind| matches!(kind, Kind::Spring | Kind::Contact));
     if size > 0.0 { size } else { f64::INFINITY }
 }
 

@@ -287,8 +287,7 @@ fn is_loose(system: &System, stuck: &NoStep) -> bool {
     at_start && stuck.load < NEXT_TO_NOTHING || system.is_floppy() && system.is_taken_up()
 }
 
-/// The state at load factor 0: where a given shape, or one in which springs are stretched, comes to
-/// rest.
+/// The state at load factor 0: where a given shape, or one in which springs are stretched or obstacles press, comes to rest.
 fn settled(
     equilibrium: &mut Equilibrium<'_>,
     newton: Settings,
@@ -296,8 +295,11 @@ fn settled(
 ) -> Result<Vec<f64>, NoStep> {
     let mut x = equilibrium.start();
     let system = equilibrium.system();
-    let stressed =
-        || !system.is_taken_up() && !system.is_floppy() && system.force_at_start(&[Kind::Spring]) > 0.0;
+    let stressed = || {
+        !system.is_taken_up()
+            && !system.is_floppy()
+            && system.force_at_start(&[Kind::Spring, Kind::Contact]) > 0.0
+    };
     if system.starts_bent() || stressed() {
         let goes_on = &mut |counts: &Statistics| observe(0.0, 0.0, counts);
         let before = equilibrium.accepted().clone();

@@ -203,6 +203,19 @@ impl System {
     /// Norm of the forces of effects of these `kinds` on what is free in the state in which an analysis
     /// begins, without any load \[N\]; 0 where it is round-off: what these effects, and no others, make of that of the coordinates.
     pub fn force_at_start(&self, kinds: &[Kind]) -> f64 {
+        self.force_of(&self.internal_of(kinds).collect::<Vec<_>>())
+    }
+
+    /// Whether any of these effects acts there, be it that all of them balance each other.
+    pub fn is_stressed_at_start(&self, kinds: &[Kind]) -> bool {
+        self.internal_of(kinds).any(|effect| self.force_of(&[effect]) > 0.0)
+    }
+
+    fn internal_of(&self, kinds: &[Kind]) -> impl Iterator<Item = &dyn Effect> {
+        self.terms.internal.iter().map(AsRef::as_ref).filter(|effect| kinds.contains(&effect.kind()))
+    }
+
+    fn force_of(&self, effects: &[&dyn Effect]) -> f64 {
         let q = self.start();
         let units = [self.length, self.length, 1.0, 1.0].into_iter().cycle();
         // Of all signs and sizes, so that neither a spring along an axis nor one between two nodes sees none of it.
@@ -211,10 +224,12 @@ impl System {
             .map(|(i, (q, unit))| f64::EPSILON * unit.max(q.abs()) * part(i))
             .collect();
         let mut round_off = vec![0.0; self.coordinates()];
-        for effect in self.terms.internal.iter().filter(|effect| kinds.contains(&effect.kind())) {
+        let mut force = vec![0.0; self.coordinates()];
+        for effect in effects {
             effect.add_tangent_product(1.0, q, &off, &mut round_off);
+            effect.add_force(1.0, q, &mut force);
         }
-        let force = self.internal_force(q, |kind| kinds.contains(&kind));
+        let force = self.norm_of_free(force);
         if force > STRESSED * self.norm(&round_off) { force } else { 0.0 }
     }
 
@@ -224,6 +239,11 @@ impl System {
         for effect in self.terms.internal.iter().filter(|effect| counts(effect.kind())) {
             effect.add_force(1.0, q, &mut force);
         }
+        self.norm_of_free(force)
+    }
+
+    /// The norm of forces without those on coordinates that are fixed.
+    fn norm_of_free(&self, mut force: Vec<f64>) -> f64 {
         self.supports.to_frames(0.0, &mut force);
         force.iter_mut().zip(&self.fixed).filter(|(_, fixed)| **fixed).for_each(|(force, _)| *force = 0.0);
         self.norm(&force)
