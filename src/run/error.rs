@@ -160,7 +160,9 @@ pub enum RunError {
     },
     /// Something that is done with one analysis was asked of several.
     #[error("this scene has stages, and this takes one analysis")]
-    #[diagnostic(help("`ancf run` and `run::solve_stages` do its analyses one after the other, `ancf run --error` with their errors"))]
+    #[diagnostic(help(
+        "`ancf run` and `run::solve_stages` do its analyses one after the other, `ancf run --error` with their errors"
+    ))]
     Stages,
     /// A stage failed.
     #[error("stage `{stage}`: {cause}")]
