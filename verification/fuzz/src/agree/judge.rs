@@ -645,10 +645,11 @@ fn tells_its_error(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     let Case { scene, frame, .. } = case;
     let way = Way::Estimate;
     // Of motions the steps err, too, and paths end elsewhere on other meshes.
-    let path = settings::get(scene, &["analysis", "static", "arc_length"]).is_some();
+    let is_path = |analysis: &Table| settings::get(analysis, &["static", "arc_length"]).is_some();
+    let path = settings::analyses(scene).any(is_path);
     // Halves and quarters of the fewest cells are too coarse for errors to fall regularly.
     let cells = [settings::fewest_cells(scene), settings::all_cells(scene)];
-    if settings::motion(scene).is_some() || path || stages::has(scene) || cells[0] < ENOUGH || cells[1] > 40 {
+    if settings::motion(scene).is_some() || path || cells[0] < ENOUGH || cells[1] > 40 {
         return Verdict::NotApplicable;
     }
     let Some(fine) = settings::finer(scene).and_then(|fine| settings::finer(&fine)) else {
@@ -661,7 +662,11 @@ fn tells_its_error(case: &Case, base: &Seen, rng: &mut Rng) -> Verdict {
     };
     let gap = gap::between(base, &seen, Records::Last);
     let numbers = matches!(settings::analysis(scene), "modal" | "buckling");
-    let value = if numbers { gap.eigenvalues } else { gap.places };
+    let value = match numbers {
+        _ if stages::has(scene) => gap.places.max(gap.eigenvalues),
+        true => gap.eigenvalues,
+        false => gap.places,
+    };
     let allowed = ALLOWED * (estimate + settings::tolerance(scene)) + round_off(scene);
     let what = format!("a position or an eigenvalue, whose error is said to be {estimate:.2e}");
     decide(case, way, Measured { value, allowed, places: true, what }, &frame.write(&fine).to_string(), rng)

@@ -187,14 +187,22 @@ fn solve(text: &str, frame: &Frame, saved: Option<&SavedState>) -> Outcome {
     }
 }
 
-/// The error that the program itself estimates for a scene with a mesh of its own; `None` where it has
-/// no estimate.
+/// The error that the program itself estimates for a scene with a mesh of its own, the largest of its stages; `None` where it has no
+/// estimate.
 pub fn own_estimate(natural: &Table, frame: &Frame) -> Option<f64> {
     let text = frame.write(natural).to_string();
     let estimate = || {
-        let scene = scene::parse("drawn.toml", &text).ok().filter(|scene| scene.stages().is_empty())?;
-        let results = accuracy::estimate(scene.model(), scene.analysis(), run::Options::default()).ok()?;
-        results.run().error.as_ref().map(|error| error.estimated.result)
+        let scene = scene::parse("drawn.toml", &text).ok()?;
+        let error = |results: &Results| results.run().error.as_ref().map(|error| error.estimated.result);
+        if scene.stages().is_empty() {
+            let results =
+                accuracy::estimate(scene.model(), scene.analysis(), run::Options::default()).ok()?;
+            return error(&results);
+        }
+        let StagesRun { results, failure } =
+            accuracy::estimate_stages(scene.stages(), run::Options::default());
+        let errors = results.iter().map(|results| error(results).unwrap_or(f64::INFINITY));
+        failure.is_none().then(|| errors.fold(0.0, f64::max))
     };
     panic::catch_unwind(AssertUnwindSafe(estimate)).ok().flatten()
 }
