@@ -216,6 +216,9 @@ impl System {
     }
 
     fn force_of(&self, effects: &[&dyn Effect]) -> f64 {
+        if effects.is_empty() {
+            return 0.0;
+        }
         let q = self.start();
         let units = [self.length, self.length, 1.0, 1.0].into_iter().cycle();
         // Of all signs and sizes, so that neither a spring along an axis nor one between two nodes sees none of it.
