@@ -61,7 +61,7 @@
 //! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, `numeric`, [`basis`], [`law`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
 //! | [`output`] | files, plots, the report page | [`model`], [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`assembly`], [`effect`], [`model`] |
-//! | [`accuracy`] | everything that a scene leaves open chosen for an accuracy, and the errors of results | `numeric`, [`centreline`], [`basis`], [`effect`], [`model`], [`results`], [`run`](mod@run), [`scene`] |
+//! | [`accuracy`] | everything that a scene leaves open chosen for an accuracy, and the errors of results | `numeric`, [`centreline`], [`basis`], [`effect`], [`model`], [`results`], [`restart`], [`run`](mod@run), [`scene`] |
 //! | [`sweep`] | many runs of a scene over a grid of values: threads, journals, one table | [`basis`], [`scene`], [`run`](mod@run), [`output`], [`accuracy`] |
 //! | [`cost`] | computing time for a given accuracy: settings of all kinds compared with a reference | [`centreline`], [`model`], [`results`], [`scene`], [`run`](mod@run), [`output`], [`accuracy`] |
 //! | `cli` | the program's commands: arguments, progress, messages | [`model`], [`results`], [`restart`], [`run`](mod@run), [`output`], [`scene`], [`accuracy`], [`sweep`], [`cost`] |

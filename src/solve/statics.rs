@@ -275,6 +275,20 @@ fn loaded(
             *solution = Solution::default();
             relaxed(equilibrium, x, settings, newton, solution, observe)
         }
+        // What an obstacle presses from the start cannot come in steps of the load. Without loads it may come to rest; where only they hold it
+        // there, the first step has done.
+        Err(stuck) if stuck.load == 0.0 && acts_from_the_start(system, &[Kind::Contact]) => {
+            let first = std::mem::take(solution);
+            let found = at_rest(equilibrium, newton, observe)
+                .and_then(|x| along_load(equilibrium, x, settings, newton, solution, observe));
+            found.map_err(|second| {
+                if was_stopped(&second) || second.load > 0.0 {
+                    return second;
+                }
+                *solution = first;
+                stuck
+            })
+        }
         path => path,
     }
 }
@@ -287,29 +301,39 @@ fn is_loose(system: &System, stuck: &NoStep) -> bool {
     at_start && stuck.load < NEXT_TO_NOTHING || system.is_floppy() && system.is_taken_up()
 }
 
-/// The state at load factor 0: where a given shape, or one in which springs are stretched or obstacles press, comes to rest.
+/// Whether a structure that is held in its stress-free state is pushed out of it by effects of these kinds.
+fn acts_from_the_start(system: &System, kinds: &[Kind]) -> bool {
+    !system.is_taken_up() && !system.is_floppy() && system.force_at_start(kinds) > 0.0
+}
+
+/// The state at load factor 0: where a given shape, or one in which springs are stretched, comes to rest.
 fn settled(
     equilibrium: &mut Equilibrium<'_>,
     newton: Settings,
     observe: Observer<'_>,
 ) -> Result<Vec<f64>, NoStep> {
-    let mut x = equilibrium.start();
     let system = equilibrium.system();
-    let stressed = || {
-        !system.is_taken_up()
-            && !system.is_floppy()
-            && system.force_at_start(&[Kind::Spring, Kind::Contact]) > 0.0
-    };
-    if system.starts_bent() || stressed() {
-        let goes_on = &mut |counts: &Statistics| observe(0.0, 0.0, counts);
-        let before = equilibrium.accepted().clone();
-        if let Err(failure) = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default(), goes_on) {
-            equilibrium.restore(before);
-            let at = system.place_of(failure.unknown().unwrap_or(0));
-            return Err(NoStep { load: 0.0, step: 0.0, failure, at });
-        }
-        equilibrium.set_accepted(&x);
+    if system.starts_bent() || acts_from_the_start(system, &[Kind::Spring]) {
+        return at_rest(equilibrium, newton, observe);
     }
+    Ok(equilibrium.start())
+}
+
+/// Where the given shape comes to rest without loads.
+fn at_rest(
+    equilibrium: &mut Equilibrium<'_>,
+    newton: Settings,
+    observe: Observer<'_>,
+) -> Result<Vec<f64>, NoStep> {
+    let (mut x, system) = (equilibrium.start(), equilibrium.system());
+    let goes_on = &mut |counts: &Statistics| observe(0.0, 0.0, counts);
+    let before = equilibrium.accepted().clone();
+    if let Err(failure) = relax(equilibrium, 0.0, &mut x, &newton, &mut Iterations::default(), goes_on) {
+        equilibrium.restore(before);
+        let at = system.place_of(failure.unknown().unwrap_or(0));
+        return Err(NoStep { load: 0.0, step: 0.0, failure, at });
+    }
+    equilibrium.set_accepted(&x);
     Ok(x)
 }
 

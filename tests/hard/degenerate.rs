@@ -459,11 +459,11 @@ fn a_beam_that_begins_inside_an_obstacle_comes_to_rest() {
     for (depth, effects) in [
         (
             1e-3,
-            "effect.contact = [{ beam = 'arm', half_plane = { point = [0, 1e-3], normal = [0, 1] }, stiffness = 1e4 }]",
+            "[[effect.contact]]\nbeam = 'arm'\nhalf_plane = { point = [0, 1e-3], normal = [0, 1] }\nstiffness = 1e4",
         ),
         (
             1e-4,
-            "effect.contact = [{ beam = 'arm', half_plane = { point = [0, 1e-4], normal = [0, 1] }, stiffness = 1e4 }]",
+            "[[effect.contact]]\nbeam = 'arm'\nhalf_plane = { point = [0, 1e-4], normal = [0, 1] }\nstiffness = 1e4",
         ),
     ] {
         for basis in ["ancf = { elements = 60 }", "rpim = { nodes = 40 }"] {
