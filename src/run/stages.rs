@@ -109,11 +109,14 @@ pub fn solve_stages(stages: &[Stage], options: Options<'_>) -> StagesRun {
     solve_stages_by(stages, options, &mut |_, model, analysis, options| model.solve_with(analysis, options))
 }
 
-/// [`solve_stages`], each stage by `solve`, which takes its number, its model with what fades there, its analysis and what it starts from.
+/// Solves a stage: its number, its model with what fades there, its analysis, and what it starts from.
+type SolveStage<'s> = dyn FnMut(usize, &Model, &Analysis, Options<'_>) -> Result<Results, RunError> + 's;
+
+/// [`solve_stages`], each stage by `solve`.
 pub(crate) fn solve_stages_by(
     stages: &[Stage],
     mut options: Options<'_>,
-    solve: &mut dyn FnMut(usize, &Model, &Analysis, Options<'_>) -> Result<Results, RunError>,
+    solve: &mut SolveStage<'_>,
 ) -> StagesRun {
     let mut run = StagesRun { results: Vec::with_capacity(stages.len()), failure: None };
     let mut reached: Option<SavedState> = None;
