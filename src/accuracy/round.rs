@@ -14,7 +14,7 @@ use crate::model::{
     Accuracy, Analysis, Beam, Discretization, Dynamic, Integrator, Model, Nodes, Open, Place,
     RPIM_GAUSS_POINTS, Static, StepControl,
 };
-use crate::results::{Errors, Results, RunForError};
+use crate::results::{Energy, Errors, Results, RunForError};
 use crate::run::{Control, Options, Progress, RunError};
 use unseen::has_points;
 
@@ -518,7 +518,10 @@ impl<'a, 'o> Runner<'a, 'o> {
         let of_open = |(index, mesh): (usize, &Mesh)| if self.is_open(index) { mesh.cells() } else { 0 };
         let cells = self.meshes.iter().enumerate().map(of_open).sum();
         let coarse = coarse.ok();
-        let steps_matter = self.has_steps();
+        // Of what rests no step errs.
+        let moves = !matches!(self.analysis, Analysis::Dynamic(_))
+            || Energy::kinetic_of(&results.states().energy).is_some();
+        let steps_matter = self.has_steps() && moves;
         let round = Round {
             stations,
             results,

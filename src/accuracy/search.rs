@@ -6,7 +6,7 @@ use super::mesh::{self, CellErrors, Mesh};
 use super::missing::Missing;
 use super::round::{FINEST, Fineness, LOOSER, Outcome, Purpose, Round, Runner, short};
 use super::{Accurate, model_error, statement};
-use crate::model::{Accuracy, Analysis};
+use crate::model::{Accuracy, Analysis, StepControl};
 use crate::results::{ErrorEstimate, Errors};
 use crate::run::RunError;
 
@@ -62,6 +62,9 @@ const STICKS: &str = "finer meshes and more load steps do not bring the results 
 /// Why nothing is known of a motion whose steps the tolerance does not decide about.
 const MUTE_STEPS: &str = "with a looser tolerance the motion takes hardly fewer steps, so that the errors of its steps cannot be seen; give a \
                           smaller tolerance, or leave the integrator out";
+/// The same of steps of a given length.
+const MUTE_FIXED_STEPS: &str = "steps of twice the length had to be divided, so that the errors of these cannot be seen; give a smaller `step`, or a `tolerance` in \
+                                place of it";
 /// The same of equilibria with friction.
 const MUTE_LOAD_STEPS: &str = "with twice the `max_step` there are hardly fewer load steps, so that what friction errs by in them cannot be seen; give a \
                                smaller `max_step`, or leave it out";
@@ -159,6 +162,11 @@ impl<'a, 'o> Search<'a, 'o> {
             if !self.runner.steps_are_open() && !round.tells_of_steps() {
                 let why = match self.runner.analysis {
                     Analysis::Static(_) => MUTE_LOAD_STEPS,
+                    Analysis::Dynamic(motion)
+                        if matches!(motion.integrator.step_control(), StepControl::Fixed(_)) =>
+                    {
+                        MUTE_FIXED_STEPS
+                    }
                     _ => MUTE_STEPS,
                 };
                 return Ok(self.finished(Judged::unknown(round), Some(why.to_owned())));

@@ -333,12 +333,8 @@ fn is_zero(value: &f64) -> bool {
 /// max |total − initial total| / max kinetic; none where nothing moves but by the round-off of the energies.
 pub(crate) fn drift(energy: &[Energy]) -> Option<f64> {
     let initial = energy.first()?.total();
-    let most = |of: &dyn Fn(&Energy) -> f64| energy.iter().map(of).fold(0.0_f64, f64::max);
-    let parts = |e: &Energy| [e.stretch, e.bend, e.stored, e.potential, e.work, e.lost];
-    let largest = most(&|e| parts(e).into_iter().fold(0.0_f64, |m, part| m.max(part.abs())));
-    let kinetic = most(&|e| e.kinetic);
-    let change = most(&|e| (e.total() - initial).abs());
-    (kinetic > f64::EPSILON * largest).then(|| change / kinetic)
+    let change = energy.iter().fold(0.0_f64, |m, e| m.max((e.total() - initial).abs()));
+    Energy::kinetic_of(energy).map(|kinetic| change / kinetic)
 }
 
 fn as_map<T: Serialize, S: Serializer>(named: &[(String, T)], serializer: S) -> Result<S::Ok, S::Error> {

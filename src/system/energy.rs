@@ -37,4 +37,13 @@ impl Energy {
     pub fn total(&self) -> f64 {
         self.stretch + self.bend + self.stored + self.kinetic + self.potential - self.work + self.lost
     }
+
+    /// The largest kinetic energy of a motion \[J\]; `None` where it is no more than the round-off of the other energies, as of what rests.
+    pub fn kinetic_of(motion: &[Self]) -> Option<f64> {
+        let most = |of: &dyn Fn(&Self) -> f64| motion.iter().map(of).fold(0.0_f64, f64::max);
+        let parts = |e: &Self| [e.stretch, e.bend, e.stored, e.potential, e.work, e.lost];
+        let others = most(&|e| parts(e).into_iter().fold(0.0_f64, |m, part| m.max(part.abs())));
+        let kinetic = most(&|e| e.kinetic);
+        (kinetic > f64::EPSILON * others).then_some(kinetic)
+    }
 }

@@ -54,3 +54,15 @@ fn every_stage_knows_its_error_and_that_of_its_start() {
     let told = error(&found[3]).estimated.result;
     assert!(off <= 3.0 * told && told <= 10.0 * off, "a motion: {off:.1e}, told {told:.1e}");
 }
+
+/// Where a motion rests, no step errs, however many it takes: it is as wrong as the equilibrium that it begins in.
+#[test]
+fn a_motion_that_rests_errs_by_what_it_begins_with() {
+    let stages = "effect.force = [{ beam = 'arm', at = 'end', value = [0, -4] }]\n\
+                  stage = [{ name = 'hang', analysis.static = {} }, { name = 'rest', analysis.dynamic = { duration = 0.1 } }]";
+    let named = "basis.ancf.elements = 6, mass_per_length = 1 }";
+    let asked = scene(&cantilever(1e4, 1.0, stages).replacen("mass_per_length = 1 }", named, 1));
+    let found = results(estimate_stages(asked.stages(), Options::default()));
+    let [hangs, rests] = [&found[0], &found[1]].map(|results| error(results).estimated.result);
+    assert!(rests >= 0.3 * hangs && rests <= 3.0 * hangs, "{rests:.1e} after {hangs:.1e}");
+}

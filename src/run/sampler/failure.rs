@@ -44,6 +44,10 @@ impl Sampler<'_> {
                 "a contact that sticks as it begins finds no first step, and shorter ones press it by round-off only: give a `max_step` of some thousandths, \
                  or friction a smaller `stiffness`"
             }
+            _ if stuck.load == 0.0 && self.system.force_at_start(&[Kind::Contact]) > 0.0 => {
+                "the structure begins inside an obstacle, which presses it before any load does: begin beside it, or let the obstacle \
+                 be softer, or a beam come to it by a support that moves"
+            }
             _ if self.limited_by_round_off(&stuck.failure) => {
                 "double precision cannot resolve these loads: the stiffness is so large, or nodes are so close, that the \
                  round-off of positions alone makes forces of their size; use fewer nodes, even spacing, or an axial \
@@ -56,10 +60,6 @@ impl Sampler<'_> {
             Failure::Crushed { .. } if self.system.goes_slack() => WITHOUT_BOUNDS,
             _ if self.system.goes_slack() && stuck.load < NEXT_TO_NOTHING => WITHOUT_BOUNDS,
             Failure::Crushed { .. } => TOO_SOFT,
-            _ if stuck.load == 0.0 && self.system.force_at_start(&[Kind::Contact]) > 0.0 => {
-                "the structure begins inside an obstacle, which presses it before any load does: begin beside it, or let the obstacle \
-                 be softer, or a beam come to it by a support that moves"
-            }
             _ if self.system.is_fading() => {
                 "what held the state with which this analysis starts and has gone fades on the way, that of supports, joints, springs, \
                  tendons and everything of another file as forces of fixed directions and couples: let it go in a `[[stage]]` of one file, \
