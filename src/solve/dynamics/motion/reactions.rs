@@ -121,9 +121,13 @@ impl Motion<'_> {
         let state = self.unknowns_of(state).into_owned();
         let mut stage = StageState { state, rates };
         let (d, c) = (FAST / h, (FAST / h).powi(2));
+        let mut last = f64::INFINITY;
         for pass in 0..MOST_PASSES {
             self.tangent_at(&stage.state, &stage.rates[n..]);
-            let factor = self.factorize(c, d, None)?;
+            let factor = match self.factorize(c, d, None) {
+                Err(_) if pass >= PASSES => break,
+                factor => factor?,
+            };
             if pass == 1 {
                 let mut change = self.rate_of_rates(&stage);
                 self.constraint_defects(&stage, 1.0, &mut change[n..]);
@@ -143,14 +147,19 @@ impl Motion<'_> {
             let StageState { state, rates } = &mut stage;
             factor.solve(&mut change);
             self.from_frames(&mut change);
+            // What no longer shrinks leads nowhere.
             let size = self.size(&change[..n]);
+            if pass >= PASSES && (size.is_nan() || size >= last) {
+                break;
+            }
+            last = size;
             for (i, change) in change[..n].iter().enumerate() {
                 state.q[i] += change;
                 state.v[i] += d * change;
                 rates[i] += c * change;
             }
             rates[n..].iter_mut().zip(&change[n..]).for_each(|(mu, change)| *mu += change);
-            if pass + 1 >= PASSES && (size.is_nan() || size <= SETTLED) {
+            if pass + 1 >= PASSES && size <= SETTLED {
                 break;
             }
         }
