@@ -201,8 +201,8 @@ fn creep(
     Err(Failure::TooSlow { iterations: ITERATIONS, last: size })
 }
 
-/// The size of the loads \[N\] at a load factor in a state, and of the forces of springs; infinite where there are none, but for moving
-/// supports.
+/// The size of the loads \[N\] at a load factor in a state, and of the forces of springs and obstacles; infinite where there are none, but
+/// for moving supports.
 fn loads(system: &System, load: f64, q: &[f64]) -> f64 {
     let mut forces = vec![0.0; q.len()];
     system.add_load_rate(1.0, load, q, &mut forces);

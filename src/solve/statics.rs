@@ -275,8 +275,8 @@ fn loaded(
             *solution = Solution::default();
             relaxed(equilibrium, x, settings, newton, solution, observe)
         }
-        // What an obstacle presses from the start cannot come in steps of the load. Without loads it may come to rest; where only they hold it
-        // there, the first step has done.
+        // An obstacle that presses from the start does so in full, however small the first step of the load is. Without loads the structure may
+        // come to rest; where only they hold it against the obstacle, that first step was found.
         Err(stuck) if stuck.load == 0.0 && acts_from_the_start(system, &[Kind::Contact]) => {
             let first = std::mem::take(solution);
             let found = at_rest(equilibrium, newton, observe)
