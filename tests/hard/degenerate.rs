@@ -402,6 +402,12 @@ fn a_stretched_spring_acts_beside_short_cells() {
         Scene { basis, effects, analysis: "buckling = { count = 1 }", ..PLAIN }
             .refused(&["springs that pull"]);
     }
+    // Two that press from both sides balance each other, and leave the column unstable: that is no round-off.
+    let effects =
+        "[[effect.spring]]\nbeam = 'arm'\nat = 'end'\nanchor = [2, 0]\nlength = 1.5\nstiffness = 2.4\n
+        [[effect.spring]]\nbeam = 'arm'\nat = 'end'\nanchor = [0.5, 0]\nlength = 0.75\nstiffness = 4.8\n
+        [[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [-1.0, 0.0]";
+    Scene { effects, analysis: "buckling = { count = 1 }", ..PLAIN }.refused(&["unstable"]);
 }
 
 #[test]
