@@ -10,7 +10,7 @@
 //! | `modes.csv` | what each mode changes along the beams: displacements, turn of r', strain, curvature |
 //! | `report.html` | everything to look at, the moving beam included; needs no network |
 //! | `shape.svg`, `curvature.svg`, … | the page's plots, one each |
-//! | `states.csv`; `states.pvd`, `vtu/` | all recorded states as a table; for ParaView (both when asked for) |
+//! | `states.csv`; `states.pvd`, `modes.pvd`, `vtu/` | all recorded states as a table; states and modes for ParaView (both when asked for) |
 //!
 //! Pages and plots need the feature `report`, which is on unless it is declined.
 //!
@@ -60,7 +60,7 @@ pub(crate) use tables::{cell, exact, text_of_cell};
 pub struct OutputOptions {
     /// `states.csv`: every beam at every record.
     pub states: bool,
-    /// `states.pvd` and `vtu/…`: the same for ParaView.
+    /// `states.pvd`, `modes.pvd` and `vtu/…`: states and modes for ParaView.
     pub vtu: bool,
 }
 
@@ -74,7 +74,7 @@ impl OutputOptions {
 
 /// Names that a run may leave; those that this run does not write are removed when it replaces an
 /// older one, so that a directory never mixes two runs.
-const NAMES: [&str; 32] = [
+const NAMES: [&str; 33] = [
     "chosen.toml",
     "reactions.csv",
     "effects.csv",
@@ -89,6 +89,7 @@ const NAMES: [&str; 32] = [
     "modes.csv",
     "states.csv",
     "states.pvd",
+    "modes.pvd",
     "vtu/last.vtu",
     "report.html",
     "shape.svg",
@@ -161,11 +162,11 @@ pub fn write(
     if !modes.is_empty() {
         stage.add("modes.csv", |out| tables::modes(&modes, out))?;
     }
-    if options.states {
+    if options.states && !t.frames.is_empty() {
         stage.add("states.csv", |out| tables::states(t, out))?;
     }
     if options.vtu {
-        for (name, text) in vtu::series(t) {
+        for (name, text) in vtu::states(t).into_iter().chain(vtu::modes(&t.last, &modes)) {
             stage.add(&name, |out| out.write_all(text.as_bytes()))?;
         }
     }
@@ -176,17 +177,22 @@ pub fn write(
         }
         stage.add("report.html", |out| out.write_all(page.as_bytes()))?;
     }
-    let frames = t.frames.len();
+    let series = if options.vtu { [t.frames.len(), modes.len()] } else { [0; 2] };
     results.states_mut().run.seconds.write += start.elapsed().as_secs_f64();
     let summary = Summary::of(results);
     stage.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
-    replace(directory, stage, if options.vtu { frames } else { 0 }, &[])?;
+    replace(directory, stage, series, &[])?;
     Ok(summary)
 }
 
-/// Gives the files their names and removes those of an older run, of which `frames` of the VTU series
+/// Gives the files their names and removes those of an older run, of which so many frames and modes for ParaView
 /// have been replaced, and the folders of its stages that are not among `stages`.
-fn replace(directory: &Path, staged: StagedFiles, frames: usize, stages: &[&str]) -> Result<(), OutputError> {
+fn replace(
+    directory: &Path,
+    staged: StagedFiles,
+    series: [usize; 2],
+    stages: &[&str],
+) -> Result<(), OutputError> {
     // Only beside a summary are these names surely those of an older run.
     let replaces = directory.join("summary.json").is_file();
     let older: Vec<&str> = NAMES.into_iter().filter(|name| replaces && !staged.contains(name)).collect();
@@ -194,12 +200,12 @@ fn replace(directory: &Path, staged: StagedFiles, frames: usize, stages: &[&str]
     let gone: Vec<String> = gone.collect();
     staged.commit()?;
     if replaces {
-        remove(directory, &older, frames);
+        remove(directory, &older, series);
     }
     for name in gone {
         let folder = directory.join(name);
         if folder.join("summary.json").is_file() {
-            remove(&folder, &NAMES, 0);
+            remove(&folder, &NAMES, [0; 2]);
             // Files of others stay, and so does then their folder.
             let _ = fs::remove_dir(folder);
         }
@@ -207,14 +213,15 @@ fn replace(directory: &Path, staged: StagedFiles, frames: usize, stages: &[&str]
     Ok(())
 }
 
-/// Removes these files, and frames of a VTU series from number `frames` on.
-fn remove(directory: &Path, names: &[&str], frames: usize) {
+/// Removes these files, and the frames and modes for ParaView behind the first so many.
+fn remove(directory: &Path, names: &[&str], [frames, modes]: [usize; 2]) {
     for name in names {
         // Missing, most often. A file that cannot be removed does not make the new ones wrong.
         let _ = fs::remove_file(directory.join(name));
     }
-    // Frames are numbered without gaps.
+    // They are numbered without gaps.
     let _ = (frames..).try_for_each(|i| fs::remove_file(directory.join(vtu::frame_name(i))));
+    let _ = (modes..).try_for_each(|i| fs::remove_file(directory.join(vtu::mode_name(i))));
     let _ = fs::remove_dir(directory.join("vtu"));
 }
 
@@ -260,7 +267,7 @@ pub fn write_stages(
     let summary = StagesSummary::new(summaries, complete);
     staged.add("summary.json", |out| out.write_all(summary.to_json()?.as_bytes()))?;
     let names: Vec<&str> = stages.iter().map(|(name, _)| *name).collect();
-    replace(directory, staged, 0, &names)?;
+    replace(directory, staged, [0; 2], &names)?;
     Ok(summary)
 }
 

@@ -1,11 +1,11 @@
-//! The series of files for ParaView: `states.pvd` names one `vtu/state_….vtu` per frame, each an
-//! unstructured grid with one polyline a beam, in the XML formats of the Visualization Toolkit
-//! (ASCII data, f64 to the last bit).
+//! The series of files for ParaView: `states.pvd` names one `vtu/state_….vtu` per frame, `modes.pvd`
+//! one `vtu/mode_….vtu` per mode, each an unstructured grid with one polyline a beam, in the XML
+//! formats of the Visualization Toolkit (ASCII data, f64 to the last bit).
 
 use std::fmt::Write as _;
 
 use super::tables::{frame_arc_lengths, section_columns};
-use crate::results::{BeamSections, Shape, Trajectory};
+use crate::results::{BeamSections, ModeShape, Shape, Trajectory};
 
 /// Type number of a polyline in the format.
 const POLY_LINE: u8 = 4;
@@ -22,17 +22,16 @@ pub(super) fn frame_name(index: usize) -> String {
     format!("vtu/state_{index:05}.vtu")
 }
 
-/// The files of the series: name relative to the directory of the results, text.
-pub(super) fn series(t: &Trajectory) -> Vec<(String, String)> {
+/// The file of a mode, counted from 0, relative to the directory of the results; its number counts from 1.
+pub(super) fn mode_name(index: usize) -> String {
+    format!("vtu/mode_{:05}.vtu", index + 1)
+}
+
+/// The files of all frames, if there are any, and of the last state: name relative to the directory of the
+/// results, text.
+pub(super) fn states(t: &Trajectory) -> Vec<(String, String)> {
     let mut files = Vec::with_capacity(t.frames.len() + 2);
-    let mut index = String::from(concat!(
-        "<?xml version=\"1.0\"?>\n",
-        "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n"
-    ));
     for (i, frame) in t.frames.iter().enumerate() {
-        let name = frame_name(i);
-        // Writing to a string cannot fail.
-        let _ = writeln!(index, "<DataSet timestep=\"{:e}\" part=\"0\" file=\"{name}\"/>", frame.parameter);
         let mut s = PointData { name: "arc length [m]", components: 1, values: Vec::new() };
         let mut displacement = PointData { name: "displacement [m]", components: 3, values: Vec::new() };
         for (beam, points) in frame.beams.iter().enumerate() {
@@ -47,12 +46,68 @@ pub(super) fn series(t: &Trajectory) -> Vec<(String, String)> {
         }
         let mut fields = vec![s, displacement];
         fields.extend(t.along.get(i).into_iter().flat_map(|beams| sections(beams)));
-        files.push((name, grid(&frame.beams, &fields)));
+        files.push((frame_name(i), grid(&frame.beams, &fields)));
+    }
+    if !files.is_empty() {
+        let index = index(t.frames.iter().map(|frame| frame.parameter).zip(&files));
+        files.push(("states.pvd".into(), index));
+    }
+    files.push(("vtu/last.vtu".into(), last(&t.last)));
+    files
+}
+
+/// The files of all modes, if there are any, on the beams of the state that vibrates or buckles; in the index they are
+/// told apart by their numbers.
+pub(super) fn modes(state: &[Shape], modes: &[&[ModeShape]]) -> Vec<(String, String)> {
+    let beams = lines(state);
+    let mut files = Vec::with_capacity(modes.len() + 1);
+    for (i, mode) in modes.iter().enumerate() {
+        let field = |name, values: fn(&ModeShape) -> &Vec<f64>| PointData {
+            name,
+            components: 1,
+            values: mode.iter().flat_map(|beam| values(beam).iter().copied()).collect(),
+        };
+        let of_beam = |beam: &ModeShape| {
+            beam.x.iter().zip(&beam.y).flat_map(|(&x, &y)| [x, y, 0.0]).collect::<Vec<_>>()
+        };
+        let displacement = PointData {
+            name: "displacement [m]",
+            components: 3,
+            values: mode.iter().flat_map(of_beam).collect(),
+        };
+        let fields = [
+            field("arc length [m]", |beam| &beam.s),
+            displacement,
+            field("rotation [rad]", |beam| &beam.angle),
+            field("axial strain", |beam| &beam.strain),
+            field("curvature [1/m]", |beam| &beam.curvature),
+        ];
+        files.push((mode_name(i), grid(&beams, &fields)));
+    }
+    if !files.is_empty() {
+        let index = index((1..).map(f64::from).zip(&files));
+        files.push(("modes.pvd".into(), index));
+    }
+    files
+}
+
+/// The file that names those of a series, each with its time, load factor or number.
+fn index<'f>(files: impl Iterator<Item = (f64, &'f (String, String))>) -> String {
+    let mut index = String::from(concat!(
+        "<?xml version=\"1.0\"?>\n",
+        "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n"
+    ));
+    for (at, (name, _)) in files {
+        // Writing to a string cannot fail.
+        let _ = writeln!(index, "<DataSet timestep=\"{at:e}\" part=\"0\" file=\"{name}\"/>");
     }
     index.push_str("</Collection>\n</VTKFile>\n");
-    files.push(("vtu/last.vtu".into(), last(&t.last)));
-    files.push(("states.pvd".into(), index));
-    files
+    index
+}
+
+/// The centrelines of these beams.
+fn lines(shapes: &[Shape]) -> Vec<Vec<[f64; 2]>> {
+    shapes.iter().map(|beam| beam.x.iter().zip(&beam.y).map(|(&x, &y)| [x, y]).collect()).collect()
 }
 
 /// What the sections of all beams carry, field by field; those that some beam does not know are left
@@ -70,8 +125,6 @@ fn sections(beams: &[BeamSections]) -> Vec<PointData> {
 
 /// The last state with everything that is known along the beams.
 fn last(shapes: &[Shape]) -> String {
-    let beams: Vec<Vec<[f64; 2]>> =
-        shapes.iter().map(|b| b.x.iter().zip(&b.y).map(|(&x, &y)| [x, y]).collect()).collect();
     let field = |name, values: fn(&Shape) -> &Vec<f64>| PointData {
         name,
         components: 1,
@@ -94,7 +147,7 @@ fn last(shapes: &[Shape]) -> String {
             fields.push(PointData { name, components: 1, values: values.concat() });
         }
     }
-    grid(&beams, &fields)
+    grid(&lines(shapes), &fields)
 }
 
 /// The position of `shape` at arc length `s`, linear between its samples.

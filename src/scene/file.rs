@@ -543,7 +543,7 @@ pub struct VelocityPointsTable {
 pub struct OutputTable {
     /// `states.csv`: every beam at every record.
     pub states: bool,
-    /// A VTU series for ParaView.
+    /// A VTU series for ParaView: of the states at every record, and of the modes of a modal analysis or of buckling.
     pub vtu: bool,
     /// `reactions.csv`: forces of supports and joints at every record.
     pub reactions: bool,

@@ -58,6 +58,27 @@ fn frames_are_those_of_the_last_run() {
     assert!(!names(folder.path()).iter().any(|name| name.starts_with("vtu") || name.starts_with("states")));
 }
 
+/// Would catch modes for ParaView that stay beside those of a run with fewer of them, and an index of no frames.
+#[test]
+fn modes_are_those_of_the_last_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for count in [3, 1, 2] {
+        let mut results = vibrations();
+        results.modes.truncate(count);
+        results.equilibrium.frames.clear();
+        write(folder.path(), &mut results.into(), &IN_FULL).expect("written");
+        let modes = (1..=count).map(|i| format!("mode_{i:05}.vtu"));
+        let expected: Vec<String> = ["last.vtu".to_owned()].into_iter().chain(modes).collect();
+        assert_eq!(names(&folder.path().join("vtu")), expected);
+        let text = fs::read_to_string(folder.path().join("modes.pvd")).expect("a file");
+        assert_eq!(text.matches("<DataSet").count(), count);
+        assert!(!names(folder.path()).iter().any(|name| name.starts_with("states")));
+    }
+    write(folder.path(), &mut rise(1).into(), &IN_FULL).expect("written");
+    assert_eq!(names(&folder.path().join("vtu")), ["last.vtu", "state_00000.vtu"]);
+    assert!(!names(folder.path()).contains(&"modes.pvd".to_owned()));
+}
+
 /// Would catch tables that are written of nothing, and some that are not written.
 #[test]
 fn an_analysis_leaves_the_tables_that_belong_to_it() {

@@ -205,7 +205,7 @@ fn every_column_of_every_file_has_a_value_test() {
             }
         }
         paths(&files.summary(), "", names.entry("summary.json").or_default());
-        for file in ["vtu/last.vtu", "vtu/state_00000.vtu"] {
+        for file in ["vtu/last.vtu", "vtu/state_00000.vtu", "vtu/mode_00001.vtu"] {
             if files.path(file).is_file() {
                 let text = files.text(file);
                 let own = text

@@ -149,3 +149,55 @@ fn vtk_reads_what_the_tables_say() {
         assert_eq!(last.values::<f64>(name), values, "{name}");
     }
 }
+
+/// The modes of two hinged beams under a load: VTK reads them where `modes.csv` has them, on the beams of `shape.csv`.
+///
+/// Would catch the modes of another number, x for y, and points of the state at rest.
+#[test]
+fn vtk_reads_modes_as_the_tables_say() {
+    let vibrations = "[beam.arm]\nstart = [1, 2]\nend = [2, 2]\naxial_stiffness = 1e3\nbending_stiffness = 1\nmass_per_length = 1\n\
+        basis.ancf.elements = 4\n\
+        [beam.rod]\nstart = [2, 2]\nend = [2.3, 1.6]\naxial_stiffness = 1e3\nbending_stiffness = 1\nmass_per_length = 1\n\
+        basis.ancf.elements = 2\n\
+        [[support]]\nbeam = \"arm\"\nat = \"start\"\nfix = [\"x\", \"y\", \"angle\"]\n\
+        [[joint]]\ntype = \"hinge\"\nfirst = { beam = \"arm\", at = \"end\" }\nsecond = { beam = \"rod\", at = \"start\" }\n\
+        [effect.gravity]\nacceleration = [0, -1]\n\
+        [output]\nvtu = true\nstates = true\n\
+        [analysis.modal]\ncount = 3\nabout = \"equilibrium\"\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let options = OutputOptions { states: true, vtu: true };
+    write(folder, &mut ours(vibrations), &options).expect("files");
+
+    static VTK: Script = Script::new("vtk_files");
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let files = (1..=3).map(|i| path(&format!("vtu/mode_{i:05}.vtu"))).collect();
+    let answer: Answer =
+        VTK.ask(&Question { index: path("modes.pvd"), files }).unwrap_or_else(|error| panic!("{error}"));
+    let [x, y, s] = ["x", "y", "s"].map(|name| column(folder, "shape.csv", name));
+    let [mode, arc, ux, uy] = ["mode", "s", "ux", "uy"].map(|name| column(folder, "modes.csv", name));
+    let points = x.len();
+    assert_eq!((answer.series.len(), mode.len()), (3, 3 * points));
+    assert!(y.iter().any(|y| *y < 1.5), "the rod hangs");
+    for (i, (at, file)) in answer.series.iter().enumerate() {
+        let grid = &answer.grids[i];
+        assert_eq!((*at, file.as_str()), (mode[points * i], format!("vtu/mode_{:05}.vtu", i + 1).as_str()));
+        grid.holds_beams([201, 201]);
+        let moved = grid.values::<[f64; 3]>("displacement [m]");
+        assert_eq!((grid.points.len(), moved.len()), (points, points));
+        for (k, (point, moved)) in grid.points.iter().zip(&moved).enumerate() {
+            let row = points * i + k;
+            assert_eq!(*point, [x[k], y[k], 0.0], "mode {i}, point {k}");
+            assert_eq!((arc[row], *moved), (s[k], [ux[row], uy[row], 0.0]), "mode {i}, point {k}");
+        }
+        for (name, column_name) in [
+            ("arc length [m]", "s"),
+            ("rotation [rad]", "rotation"),
+            ("axial strain", "strain"),
+            ("curvature [1/m]", "curvature"),
+        ] {
+            let all = column(folder, "modes.csv", column_name);
+            assert_eq!(grid.values::<f64>(name), all[points * i..points * (i + 1)], "mode {i}, {name}");
+        }
+    }
+}
