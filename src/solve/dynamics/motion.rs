@@ -95,6 +95,9 @@ pub struct Motion<'a> {
     mass_factor: Option<Factor>,
     /// The constraint rows with which it is factorised.
     mass_border: Vec<BorderRow>,
+    /// The mass matrix without constraint rows, where these follow the state and the mass does not.
+    without_rows: Option<Factor>,
+    rows_factor: RowsFactor,
     border: Vec<BorderRow>,
     /// Whether the last step is much too long for vibrations of the mesh.
     pub vibrates: bool,
@@ -125,6 +128,19 @@ pub struct Motion<'a> {
     pub statistics: Statistics,
 }
 
+/// The mass matrix with the constraint rows of a tangent.
+#[derive(Debug, Default)]
+struct RowsFactor {
+    factor: Option<Factor>,
+    /// Whether the rows are those of the last tangent.
+    is_of_tangent: bool,
+}
+
+/// Whether the mass matrix of the unknowns depends on the state.
+fn turns_mass(system: &System) -> bool {
+    system.turns() || system.has_turning_inertia()
+}
+
 /// The mass matrix of the unknowns in the state `q`, given in fixed axes, with the fixed
 /// coordinates eliminated: once with zeros on their diagonal, and once so that it can be
 /// factorised.
@@ -151,7 +167,9 @@ impl<'a> Motion<'a> {
         system.border_in_motion(0.0, system.start(), &mut border);
         let [free_mass, eliminated_mass] = free_mass(system, 0.0, system.start(), &mass);
         let mass_factor = Some(Factor::definite(None, &eliminated_mass, &border)?);
-        let carries = system.carries();
+        let (carries, follows) = (system.carries(), system.has_nonlinear_constraints());
+        let follow_alone = follows && !turns_mass(system);
+        let without_rows = follow_alone.then(|| Factor::definite(None, &eliminated_mass, &[])).transpose()?;
         let carried = if carries { n } else { 0 };
         Ok(Self {
             system,
@@ -160,13 +178,15 @@ impl<'a> Motion<'a> {
             eliminated_mass,
             mass_factor,
             mass_border: Vec::new(),
+            without_rows,
+            rows_factor: RowsFactor::default(),
             border,
             vibrates: false,
             fastest: 0.0,
             tangent: system.matrix(),
             damping: system.is_damped().then(|| system.damping_pattern()),
             carries,
-            follows: system.has_nonlinear_constraints(),
+            follows,
             workspace: Workspace::default(),
             force: vec![0.0; n],
             side_by_side: [0; 2].map(|_| vec![0.0; n]),
@@ -261,7 +281,7 @@ impl<'a> Motion<'a> {
     /// `q` in fixed axes, if they are not constant. The mass matrix and rows that belong to the
     /// tangent stay as they are, so that a motion continued from a saved state finds the same.
     fn mass_at(&mut self, time: f64, q: &[f64]) -> Result<(), Singular> {
-        let mass_turns = self.system.turns() || self.system.has_turning_inertia();
+        let mass_turns = turns_mass(self.system);
         if mass_turns {
             [_, self.eliminated_mass] = free_mass(self.system, time, q, &self.mass);
         }
@@ -473,8 +493,9 @@ impl<'a> Motion<'a> {
         supports.eliminate(rates.time, tangent);
         if self.follows || system.turns() {
             system.border_in_motion(rates.time, &x[..n], &mut self.border);
+            self.rows_factor.is_of_tangent = false;
         }
-        if system.has_turning_inertia() || system.turns() {
+        if turns_mass(system) {
             [self.free_mass, _] = free_mass(system, rates.time, &x[..n], &self.mass);
         }
         if self.follows {
