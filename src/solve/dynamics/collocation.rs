@@ -459,14 +459,17 @@ impl<'a> Collocation<'a> {
         let n = self.motion.coordinates();
         let h = self.trial_step;
         self.polynomial(x);
-        // −M Σ ℓ_j(x) Q̈_j − f(q) is M times the defect but for the forces of supports and
-        // constraints, which the solution removes.
+        // −M Σ ℓ_j(x) Q̈_j − f(q) − Bᵀ Σ ℓ_j(x) μ_j is M times the defect but for forces of supports and constraints, which
+        // the solution removes: it removes small ones only, because its rows are those of an earlier state.
+        let shares = self.tableau.lagrange(x);
+        let multiplier =
+            |stages: &Lanes| shares.iter().zip(stages.to_array()).map(|(share, mu)| share * mu).sum::<f64>();
+        let mut unknowns = state.q.clone();
+        unknowns.extend(self.stages.displacement[n..].iter().map(multiplier));
         let mut e = vec![0.0; self.motion.unknowns()];
         let a = Acceleration::constant(&self.acceleration);
         let rates = Rates { time: state.time, v: &state.v, a };
-        let mut x = vec![0.0; self.motion.unknowns()];
-        x[..n].copy_from_slice(&state.q);
-        self.motion.residual(&x, rates, &mut e);
+        self.motion.residual(&unknowns, rates, &mut e);
         e[n..].fill(0.0);
         let square = self.filter(state, &mut e);
         e.truncate(n);
@@ -687,7 +690,8 @@ impl Method for Collocation<'_> {
             self.predict_as_a_whole(from, h);
         }
         let tight = (TOLERANCE * displacement).max(REST);
-        let tolerance = allowed.map_or(tight, |allowed| allowed.iteration.max(tight));
+        let one_sided = self.motion.keeps_lengths();
+        let tolerance = allowed.map_or(tight, |allowed| allowed.of_iteration(one_sided).max(tight));
         let solved = self.solve_stages(from, h, tolerance, allowed.is_some(), record);
         self.astray = match &solved {
             Ok(()) => false,

@@ -464,10 +464,8 @@ impl Method for GeneralizedAlpha<'_> {
         let moved = self.motion.size_of_change(&from.q, &self.x);
         let tight = self.newton_tolerance * (RELATIVE_TOLERANCE * moved).min(1.0);
         let one_sided = self.motion.keeps_lengths();
-        let allowed_of_iteration =
-            |allowed: Allowed| if one_sided { allowed.one_sided } else { allowed.iteration };
         let settings = Settings {
-            tolerance: allowed.map_or(tight, |allowed| allowed_of_iteration(allowed).max(tight)),
+            tolerance: allowed.map_or(tight, |allowed| allowed.of_iteration(one_sided).max(tight)),
             // The tangent is exact, and inertia makes it well conditioned: the increments alone
             // tell convergence.
             residual_tolerance: f64::INFINITY,

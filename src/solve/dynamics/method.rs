@@ -19,6 +19,13 @@ pub struct Allowed {
     pub one_sided: f64,
 }
 
+impl Allowed {
+    /// What the iteration of a step may leave; `one_sided`: where that has one sign in all steps.
+    pub fn of_iteration(&self, one_sided: bool) -> f64 {
+        if one_sided { self.one_sided } else { self.iteration }
+    }
+}
+
 /// Part by which a step is shorter than the one that was given and is still that step.
 const WHOLE: f64 = 1e-6;
 
