@@ -16,8 +16,8 @@ const CONTRACTION_OF_BUCKLING: f64 = 8.0;
 const CONTRACTION_OF_MOTION: f64 = 10.0;
 /// … of beams with contacts, which begin and end within cells …
 const CONTRACTION_OF_CONTACT: f64 = 6.0;
-/// … of strings with a kink within them, which continuous tangents round off, and at rest with friction, which sticks in a part of a
-/// cell or not …
+/// … of strings with a kink within them, which continuous tangents round off, and with friction, which sticks in a part of a cell or
+/// not …
 const CONTRACTION_OF_FIRST_ORDER: f64 = 2.0;
 /// … of all results of a method of second order …
 const CONTRACTION_OF_SECOND_ORDER: f64 = 4.0;
@@ -198,8 +198,7 @@ impl Runner<'_, '_> {
     /// of the result no more than was seen.
     pub fn contractions(&self, seen: f64) -> [f64; 2] {
         let [result, curvature] = self.contractions_of_smooth(seen);
-        let sticks = matches!(self.analysis, Analysis::Static(_)) && self.model.has_friction();
-        let first_order = self.kink.is_some() || sticks;
+        let first_order = self.kink.is_some() || self.model.has_friction();
         [if first_order { result.min(CONTRACTION_OF_FIRST_ORDER) } else { result }, curvature]
     }
 
