@@ -341,6 +341,29 @@ fn a_heated_layer_bends_long_cells_as_it_should() {
     }
 }
 
+/// One of two equal layers is heated between two of the even places of `shape.csv`. Nothing else acts: with ε₀ the layers strain along
+/// a line ε₀ (1/2 + 3/4 z/H) through their height 2 H, z from their middle, and the stresses of the cold one are E ε₀ (−1/4, 1/2) at its faces,
+/// those of the heated one E ε₀ (−1/2, 1/4).
+#[test]
+fn a_short_heated_range_has_the_largest_stress() {
+    let section = "section.layers = [{ width = 0.02, height = 0.01, youngs_modulus = 70e9 }, { width = 0.02, height = 0.01, youngs_modulus = 70e9 }]";
+    let load = "effect.actuation = [{ beam = 'arm', layer = 2, strain = 1e-3, from = 0.5012, to = 0.5042 }]";
+    let found = Written::of(&arm(section, load, "ancf.nodes = [0, 0.5012, 0.5042, 1]"));
+    let [layer, s, bottom, top] =
+        ["layer", "s", "stress_bottom", "stress_top"].map(|name| found.column("layers.csv", name));
+    let within: Vec<usize> =
+        (0..s.len()).filter(|i| (0.50119..0.50421).contains(&s[*i]) && top[*i].abs() > 1e6).collect();
+    assert_eq!(within.len(), 4, "{within:?}");
+    for i in within {
+        let faces = if layer[i] < 1.5 { [-17.5e6, 35e6] } else { [-35e6, 17.5e6] };
+        near(bottom[i], faces[0], 1e4, "stress_bottom");
+        near(top[i], faces[1], 1e4, "stress_top");
+    }
+    for (i, s) in s.iter().enumerate().filter(|(_, s)| !(0.5012..=0.5042).contains(*s)) {
+        assert!(bottom[i].abs().max(top[i].abs()) < 1e4, "{s}: {} and {}", bottom[i], top[i]);
+    }
+}
+
 /// A column of EI = (1 + s/4)² on hinges: with z = 1 + s/4 its shape is √z sin(β ln z), β = nπ/ln 1.25,
 /// under P = (β² + ¼)/16.
 #[test]

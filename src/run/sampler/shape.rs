@@ -131,6 +131,7 @@ impl Sampler<'_> {
                 let length = part.basis.length();
                 let mut jumps = jumps(beam, length);
                 jumps.extend(self.model.beams[beam].section.jumps());
+                jumps.extend(self.jumps_of_layers(beam, length));
                 jumps.sort_by(f64::total_cmp);
                 jumps.dedup_by(|a, b| (*a - *b).abs() <= SAME_PLACE * length);
                 let (s, sides) = stations(even.s(), &jumps);
@@ -143,6 +144,14 @@ impl Sampler<'_> {
                 shape
             })
             .collect()
+    }
+
+    /// Where a strain that is imposed on a layer of a beam begins or ends: the stresses jump there.
+    fn jumps_of_layers(&self, beam: usize, length: f64) -> Vec<f64> {
+        let inner = SAME_PLACE * length..(1.0 - SAME_PLACE) * length;
+        let imposed = self.model.parts.iter().filter_map(|part| part.actuation(beam));
+        let on_layers = imposed.filter(|imposed| imposed.layer.is_some());
+        on_layers.flat_map(|imposed| imposed.strain.jumps()).filter(|s| inner.contains(s)).collect()
     }
 
     /// Gives rows before a cut the strain and the curvature there: those of a node are the ones behind it.
