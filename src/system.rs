@@ -112,6 +112,7 @@ pub struct System {
     round_off: f64,
     lowest_vibration: f64,
     has_strings: bool,
+    bends: bool,
     goes_slack: bool,
     /// Number of rigid motions that neither supports, joints nor springs resist, where it is known; counted in statics
     /// only.
@@ -209,6 +210,7 @@ impl System {
             stiffness,
             round_off,
             has_strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
+            bends: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_some()),
             goes_slack: model
                 .beams
                 .iter()
@@ -460,6 +462,11 @@ impl System {
     /// Whether a beam has no bending stiffness.
     pub fn has_strings(&self) -> bool {
         self.has_strings
+    }
+
+    /// Whether a beam has a bending stiffness.
+    pub fn bends(&self) -> bool {
+        self.bends
     }
 
     /// Whether an axial law resists tension only, or pressure only, so that a beam with it has no stiffness along its axis where

@@ -30,6 +30,13 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
              equilibrium: which of them was found is arbitrary; a small load, or a small change of the geometry, decides"
         )
     });
+    let jump = solution.jump.map(|loads| loads.map(|load| plain(load, 6))).map(|[low, high]| {
+        format!(
+            "between load factors {low} and {high} the structure jumps to another equilibrium, in which it is told from there on: beyond a \
+             limit point or a bifurcation it comes to rest where its slow motion ends, which a fast one may pass; the path itself is \
+             followed by `arc_length` where strings have a small bending stiffness, and a motion (`dynamic`) shows where it goes"
+        )
+    });
     let start = solution.unstable_start.map(|start| {
         let directions = match start {
             Stability::Directions(1) => "one direction".to_owned(),
@@ -61,7 +68,7 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
              softer stop, another `max_step` or more nodes"
         )
     });
-    let others = [pressed, crest, start, unwatched, softened, returns].into_iter().flatten();
+    let others = [pressed, crest, jump, start, unwatched, softened, returns].into_iter().flatten();
     let (told, more) = solution.events.split_at(MOST.min(solution.events.len()));
     let more = more.last().map(|last| {
         let beyond = ": what the path ends in is no shape that the structure takes; a load that pushes it aside, and acts in a stage before, \

@@ -1,6 +1,8 @@
 //! Static analysis: from the stress-free state to the full loads, or along the path through limit
 //! points.
 
+mod relaxed;
+
 use super::equilibrium::Equilibrium;
 use super::newton::{Failure, Iterations, Settings};
 use super::path::{self, NoStep, Parameter, Path, Point};
@@ -8,9 +10,9 @@ use super::relax::relax;
 use super::stability::{Stability, StabilityChange};
 use crate::assembly::{InternalVariables, Kind};
 use crate::model::{ArcLength, Static};
-use crate::numeric::GOLDEN;
 use crate::solve::{Statistics, StepRecord, Work};
 use crate::system::{System, View};
+use relaxed::{look, relaxed};
 use std::f64::consts::FRAC_PI_2;
 
 /// Largest last increment, in beam lengths, with which stability and the path's tangent are judged.
@@ -18,18 +20,8 @@ use std::f64::consts::FRAC_PI_2;
 /// which in a slender beam is enough to change the signs.
 const LAST_INCREMENT: f64 = 1e-6;
 
-/// Largest perturbation that pushes a structure off an unstable equilibrium: positions in beam
-/// lengths, gradients as they are.
-const PUSH: f64 = 1e-3;
-
-/// Largest turn of a support in a step of a structure that is relaxed, so that it follows to the side of the turn \[rad\] …
-const LARGEST_TURN: f64 = 0.5;
-/// … and along a path by loads, so that what it carries turns by less than half a turn.
+/// Largest turn of a support in a step of a path by loads, so that what it carries turns by less than half a turn \[rad\].
 const LARGEST_TURN_OF_PATH: f64 = FRAC_PI_2;
-
-/// Two equilibria that differ by less are the same: positions in beam lengths, gradients as they
-/// are.
-const SAME_SIDE: f64 = 1e-5;
 
 /// By how much a path may miss its target, relative to the wanted load factor or in beam lengths.
 const AT_TARGET: f64 = 1e-12;
@@ -49,8 +41,6 @@ const STILL: f64 = 1e-13;
 /// … and where there are no larger ones while load factors grow to so many times those that are of interest, nothing moves: that is more
 /// than round-off hides.
 const GROWN: f64 = 1e14;
-/// Inverse iterations after which the softest motion stands out.
-const INVERSE_ITERATIONS: usize = 4;
 
 /// The results of a static analysis.
 #[derive(Clone, Debug, Default)]
@@ -83,6 +73,8 @@ pub struct Solution {
     /// Load factor at which a mechanism first reached an unstable equilibrium, from which it comes
     /// to rest in one stable equilibrium or in another.
     pub crest: Option<f64>,
+    /// The load factors between which a structure that was relaxed has jumped to another equilibrium.
+    pub jump: Option<[f64; 2]>,
     /// Counts.
     pub statistics: Statistics,
     /// Why the path ends before its target, if it does.
@@ -434,187 +426,6 @@ fn steps_between(system: &System, settings: &Static, recorded: usize, turn: f64)
     // A length such as 1/50, as it is written, has 50 steps.
     let steps = (1.0 / settings.largest_step(system.has_friction()) - AT_TARGET).ceil() as usize;
     steps.max(system.parts_of_turns(turn)).div_ceil(recorded).max(1)
-}
-
-/// The equilibria at the parts of the load, each relaxed from the one before.
-fn relaxed(
-    equilibrium: &mut Equilibrium<'_>,
-    mut x: Vec<f64>,
-    settings: &Static,
-    newton: Settings,
-    solution: &mut Solution,
-    observe: Observer<'_>,
-) -> Result<(), NoStep> {
-    let mut work = Work::default();
-    let mut turned = Turned::new(settings);
-    solution.record(equilibrium, 0.0, &x, work, &mut turned);
-    let recorded = settings.steps.unwrap_or(1).max(1);
-    let between = steps_between(equilibrium.system(), settings, recorded, LARGEST_TURN);
-    let parts = recorded.saturating_mul(between);
-    let mut before = Stability::Directions(0);
-    for part in 1..=parts {
-        let load = part as f64 / parts as f64;
-        let step = 1.0 / parts as f64;
-        let mut stopped = false;
-        let goes_on = &mut |counts: &Statistics| {
-            stopped = stopped || !observe(load - step, step, counts);
-            !stopped
-        };
-        let moved = if equilibrium.system().supports().moves() {
-            equilibrium.moved_with_supports(load - step, load, &x)
-        } else {
-            Some(x.clone())
-        };
-        if let (None, Some(free)) = (solution.pressed, equilibrium.system().free_motions()) {
-            let pressed = |unstable| UnstableMechanism { load, unstable, free };
-            let unstable = moved.as_ref().and_then(|x| equilibrium.directions_at(load, x));
-            solution.pressed = unstable.filter(|unstable| *unstable > free).map(pressed);
-        }
-        let start = x.clone();
-        // Between supports that come together or part, all cells share the change of their distance: left to
-        // the cells beside the supports, it would fold these back.
-        if equilibrium.system().shared_move(load, &x) == [0.0; 2]
-            && let Some(moved) = moved
-        {
-            x = moved;
-        }
-        let mut record = Iterations::default();
-        let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record, goes_on);
-        if outcome.is_ok() && may_leave(equilibrium, load, &x) {
-            // An unstable equilibrium, such as a pendulum that stands on its head: both sides are
-            // tried.
-            let mut other = x.clone();
-            push(equilibrium, -1.0, &mut other);
-            let other = rest(equilibrium, load, other, &newton, goes_on);
-            push(equilibrium, 1.0, &mut x);
-            outcome = relax(equilibrium, load, &mut x, &newton, &mut record, goes_on);
-            if outcome.is_ok() && other.is_some_and(|other| differ(equilibrium, &x, &other)) {
-                solution.crest.get_or_insert(load);
-            }
-            if let (Ok(_), Some(after)) = (&outcome, stability(equilibrium, load, &x))
-                && before.is_lost(after)
-            {
-                solution.events.push(StabilityChange { load, resolution: step, before, after });
-                before = after;
-            }
-        }
-        solution.history.push(StepRecord {
-            parameter: load,
-            step,
-            accepted: outcome.is_ok(),
-            increments: record.increments,
-            residuals: record.residuals,
-        });
-        let sure = outcome.map_err(|failure| {
-            let at = equilibrium.system().place_of(failure.unknown().unwrap_or(0));
-            NoStep { load: load - step, step, failure, at }
-        })?;
-        if !sure {
-            solution.softened.get_or_insert(load);
-        }
-        equilibrium.statistics.load_steps += 1;
-        work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
-        turned.add_step(equilibrium.system(), (load - step, &start), (load, &x));
-        if part.is_multiple_of(between) {
-            solution.record(equilibrium, load, &x, work, &mut turned);
-        }
-        equilibrium.set_accepted(&x);
-        if stopped || !observe(load, step, &equilibrium.statistics) {
-            break;
-        }
-    }
-    Ok(())
-}
-
-/// Looks at the state `x`; whether its tangent could be factorised.
-fn look(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
-    let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    equilibrium.linearize(load, x, None, &mut residual, &mut rate).is_ok()
-}
-
-/// Stability in the state `x`, where the factorisation tells.
-fn stability(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> Option<Stability> {
-    look(equilibrium, load, x).then(|| equilibrium.stability()).flatten()
-}
-
-/// Whether the state `x` is known to be unstable, or, where loads have no potential, directions lack
-/// stiffness in it.
-fn may_leave(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
-    look(equilibrium, load, x)
-        && match equilibrium.stability_and_softness() {
-            (_, Some(soft)) => soft > 0,
-            _ => equilibrium.is_unstable() && !is_stiff_without_matrix(equilibrium, load, x),
-        }
-}
-
-/// Whether the softest motion at the last linearised state, the only one that its matrix calls unstable, is stable by products
-/// with the tangent that are evaluated without a matrix: its entries have then lost what resists this motion, as those of a stiff
-/// bar on many elements that hangs.
-fn is_stiff_without_matrix(equilibrium: &Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
-    let system = equilibrium.system();
-    // The products leave out the full turns of torsion springs.
-    let applies = equilibrium.is_symmetric() && !system.has_windings();
-    if !applies || equilibrium.unstable_directions() != Some(1) {
-        return false;
-    }
-    let (q, multipliers) = x.split_at(system.coordinates());
-    let weights = system.weights();
-    let mut v = vec![0.0; x.len()];
-    push(equilibrium, 1.0, &mut v);
-    // The inverse of the matrix leaves the motion with the least stiffness, whatever its sign.
-    let mut by_matrix = 0.0;
-    for _ in 0..INVERSE_ITERATIONS {
-        let size = v.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
-        v.iter_mut().zip(&weights).for_each(|(v, weight)| *v *= weight / size);
-        v[q.len()..].fill(0.0);
-        system.supports().to_frames(load, &mut v[..q.len()]);
-        v.iter_mut().zip(system.fixed()).filter(|(_, fixed)| **fixed).for_each(|(v, _)| *v = 0.0);
-        let mut force = v[..q.len()].to_vec();
-        system.supports().from_frames(load, &mut force);
-        equilibrium.solve(load, &mut v, false);
-        by_matrix = v.iter().zip(&force).map(|(v, f)| v * f).sum();
-    }
-    let (v, mut force) = (&v[..q.len()], vec![0.0; q.len()]);
-    system.tangent_product(load, q, v, &mut force);
-    system.add_constraint_stiffness_product(q, multipliers, v, &mut force);
-    let stiffness: f64 = v.iter().zip(&force).map(|(v, f)| v * f).sum();
-    by_matrix < 0.0 && stiffness > 0.0
-}
-
-/// The equilibrium to which `x` relaxes; `None` where it does not come to rest. Nothing is accepted.
-fn rest(
-    equilibrium: &mut Equilibrium<'_>,
-    load: f64,
-    mut x: Vec<f64>,
-    newton: &Settings,
-    goes_on: &mut dyn FnMut(&Statistics) -> bool,
-) -> Option<Vec<f64>> {
-    let rests = equilibrium.without_trace(|equilibrium| {
-        relax(equilibrium, load, &mut x, newton, &mut Iterations::default(), goes_on).is_ok()
-    });
-    rests.then_some(x)
-}
-
-/// Whether two equilibria are not the same.
-fn differ(equilibrium: &Equilibrium<'_>, a: &[f64], b: &[f64]) -> bool {
-    let n = equilibrium.system().coordinates();
-    let apart: Vec<f64> = a[..n].iter().zip(b).map(|(a, b)| a - b).collect();
-    equilibrium.size(&apart) > SAME_SIDE
-}
-
-/// Perturbs every free coordinate a little and unevenly, in the same way in every run, to one side
-/// or the other.
-fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
-    let system = equilibrium.system();
-    let mut push: Vec<f64> = (1..=system.coordinates())
-        .map(|i| {
-            let unit = if i % 4 == 1 || i % 4 == 2 { system.length() } else { 1.0 };
-            side * PUSH * unit * ((i as f64 * GOLDEN).fract() - 0.4)
-        })
-        .collect();
-    system.supports().to_frames(0.0, &mut push);
-    system.supports().from_frames(0.0, &mut push);
-    x.iter_mut().zip(&push).for_each(|(x, push)| *x += push);
 }
 
 /// Records a change of stability in the last step.

@@ -4,6 +4,7 @@
 mod branch;
 mod degenerate;
 mod floating;
+mod jumps;
 #[cfg(unix)]
 mod killed;
 mod motions;

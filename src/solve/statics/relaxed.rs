@@ -1,0 +1,295 @@
+//! Equilibria of what nothing holds before its loads do, each relaxed from the one before.
+//!
+//! # Jumps
+//! What comes to rest under each of the loads goes on beyond a load that its equilibrium cannot bear: it jumps to another one, as an
+//! arch does that is pulled through by a string. That is told. Where two equilibria that follow each other are not led to by the rates
+//! dx/dλ at both, the load between them is halved again and again, always where more of the change happens. What depends on the load
+//! without a jump changes by ever less.
+
+use super::{Solution, Turned, is_slack, steps_between};
+use crate::model::Static;
+use crate::numeric::GOLDEN;
+use crate::solve::equilibrium::Equilibrium;
+use crate::solve::newton::{Iterations, Settings};
+use crate::solve::path::NoStep;
+use crate::solve::relax::relax;
+use crate::solve::stability::{Stability, StabilityChange};
+use crate::solve::statics::{Observer, UnstableMechanism};
+use crate::solve::{Statistics, StepRecord, Work};
+
+/// Largest perturbation that pushes a structure off an unstable equilibrium: positions in beam
+/// lengths, gradients as they are.
+const PUSH: f64 = 1e-3;
+/// Largest turn of a support in a step, so that the structure follows to the side of the turn \[rad\].
+const LARGEST_TURN: f64 = 0.5;
+/// Two equilibria that differ by less are the same: positions in beam lengths, gradients as they
+/// are.
+const SAME_SIDE: f64 = 1e-5;
+/// Inverse iterations after which the softest motion stands out.
+const INVERSE_ITERATIONS: usize = 4;
+/// Part of the first load at which what was slack has taken its shape.
+const TAUT: f64 = 1e-3;
+/// Smallest change that may be a jump: positions in beam lengths, gradients as they are.
+const SMALLEST_JUMP: f64 = 1e-3;
+/// Part of a change by which rates at both of its ends may miss it.
+const MISSED: f64 = 0.2;
+/// How often the load between two equilibria is halved in search of a jump …
+const HALVINGS: usize = 14;
+/// … which is one where this part of the change is left in the end. A change in proportion to the root of a load is smaller by then.
+const LEFT: f64 = 0.05;
+
+/// The equilibria at the parts of the load, each relaxed from the one before.
+pub(super) fn relaxed(
+    equilibrium: &mut Equilibrium<'_>,
+    mut x: Vec<f64>,
+    settings: &Static,
+    newton: Settings,
+    solution: &mut Solution,
+    observe: Observer<'_>,
+) -> Result<(), NoStep> {
+    let mut work = Work::default();
+    let mut turned = Turned::new(settings);
+    solution.record(equilibrium, 0.0, &x, work, &mut turned);
+    let recorded = settings.steps.unwrap_or(1).max(1);
+    let between = steps_between(equilibrium.system(), settings, recorded, LARGEST_TURN);
+    let parts = recorded.saturating_mul(between);
+    let mut before = Stability::Directions(0);
+    for part in 1..=parts {
+        let load = part as f64 / parts as f64;
+        let step = 1.0 / parts as f64;
+        let mut stopped = false;
+        let goes_on = &mut |counts: &Statistics| {
+            stopped = stopped || !observe(load - step, step, counts);
+            !stopped
+        };
+        let moved = moved(equilibrium, load - step, load, &x);
+        if let (None, Some(free)) = (solution.pressed, equilibrium.system().free_motions()) {
+            let pressed = |unstable| UnstableMechanism { load, unstable, free };
+            let unstable = moved.as_ref().and_then(|x| equilibrium.directions_at(load, x));
+            solution.pressed = unstable.filter(|unstable| *unstable > free).map(pressed);
+        }
+        let start = x.clone();
+        set_out(equilibrium, load, moved, &mut x);
+        let mut record = Iterations::default();
+        let mut outcome = relax(equilibrium, load, &mut x, &newton, &mut record, goes_on);
+        if outcome.is_ok() && may_leave(equilibrium, load, &x) {
+            // An unstable equilibrium, such as a pendulum that stands on its head: both sides are
+            // tried.
+            let mut other = x.clone();
+            push(equilibrium, -1.0, &mut other);
+            let other = rest(equilibrium, load, other, &newton, goes_on);
+            push(equilibrium, 1.0, &mut x);
+            outcome = relax(equilibrium, load, &mut x, &newton, &mut record, goes_on);
+            if outcome.is_ok() && other.is_some_and(|other| differ(equilibrium, &x, &other)) {
+                solution.crest.get_or_insert(load);
+            }
+            if let (Ok(_), Some(after)) = (&outcome, stability(equilibrium, load, &x))
+                && before.is_lost(after)
+            {
+                solution.events.push(StabilityChange { load, resolution: step, before, after });
+                before = after;
+            }
+        }
+        solution.history.push(StepRecord {
+            parameter: load,
+            step,
+            accepted: outcome.is_ok(),
+            increments: record.increments,
+            residuals: record.residuals,
+        });
+        let sure = outcome.map_err(|failure| {
+            let at = equilibrium.system().place_of(failure.unknown().unwrap_or(0));
+            NoStep { load: load - step, step, failure, at }
+        })?;
+        if !sure {
+            solution.softened.get_or_insert(load);
+        }
+        if solution.jump.is_none() && solution.crest.is_none() && equilibrium.system().bends() {
+            solution.jump = jump(equilibrium, [(load - step, &start), (load, &x)], &newton, goes_on);
+        }
+        equilibrium.statistics.load_steps += 1;
+        work.add_states(equilibrium.system(), (load - step, &start), (load, &x));
+        turned.add_step(equilibrium.system(), (load - step, &start), (load, &x));
+        if part.is_multiple_of(between) {
+            solution.record(equilibrium, load, &x, work, &mut turned);
+        }
+        equilibrium.set_accepted(&x);
+        if stopped || !observe(load, step, &equilibrium.statistics) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Where a state goes as supports move from where they are at one load factor to where they are at another; `None` where that is not
+/// known.
+fn moved(equilibrium: &mut Equilibrium<'_>, from: f64, load: f64, x: &[f64]) -> Option<Vec<f64>> {
+    if equilibrium.system().supports().moves() {
+        equilibrium.moved_with_supports(from, load, x)
+    } else {
+        Some(x.to_vec())
+    }
+}
+
+/// Moves `x` to where it sets out to the equilibrium at the load factor `load`.
+fn set_out(equilibrium: &Equilibrium<'_>, load: f64, moved: Option<Vec<f64>>, x: &mut Vec<f64>) {
+    // Between supports that come together or part, all cells share the change of their distance: left to
+    // the cells beside the supports, it would fold these back.
+    if equilibrium.system().shared_move(load, x) == [0.0; 2]
+        && let Some(moved) = moved
+    {
+        *x = moved;
+    }
+}
+
+/// The load factors between which the structure jumps on its way from one equilibrium to the next; `None` also where that is not found.
+/// What was slack takes its shape first.
+fn jump(
+    equilibrium: &mut Equilibrium<'_>,
+    [(from, start), (to, end)]: [(f64, &[f64]); 2],
+    newton: &Settings,
+    goes_on: &mut dyn FnMut(&Statistics) -> bool,
+) -> Option<[f64; 2]> {
+    let mut rests = |equilibrium: &mut Equilibrium<'_>, (from, start): (f64, &[f64]), load| {
+        let moved = moved(equilibrium, from, load, start);
+        let mut x = start.to_vec();
+        set_out(equilibrium, load, moved, &mut x);
+        rest(equilibrium, load, x, newton, goes_on)
+    };
+    let (mut low, mut high) = ((from, start.to_vec()), (to, end.to_vec()));
+    if is_slack(equilibrium.system(), start) {
+        let load = from + TAUT * (to - from);
+        low = (load, rests(equilibrium, (from, start), load)?);
+    }
+    let whole = change(equilibrium, &low.1, &high.1);
+    if whole <= SMALLEST_JUMP || leads(equilibrium, [&low, &high]) {
+        return None;
+    }
+    for _ in 0..HALVINGS {
+        let load = 0.5 * (low.0 + high.0);
+        let middle = rests(equilibrium, (low.0, &low.1), load)?;
+        let parts = [change(equilibrium, &low.1, &middle), change(equilibrium, &middle, &high.1)];
+        if parts[0] >= parts[1] {
+            high = (load, middle);
+        } else {
+            low = (load, middle);
+        }
+        if parts[0].max(parts[1]) <= LEFT * whole {
+            return None;
+        }
+    }
+    Some([low.0, high.0])
+}
+
+/// Whether the rates dx/dλ at two equilibria lead from the one to the other.
+fn leads(equilibrium: &mut Equilibrium<'_>, [low, high]: [&(f64, Vec<f64>); 2]) -> bool {
+    let (Some(first), Some(second)) = (rate(equilibrium, low), rate(equilibrium, high)) else { return false };
+    let half = 0.5 * (high.0 - low.0);
+    let led: Vec<f64> =
+        low.1.iter().zip(first).zip(second).map(|((x, first), second)| x + half * (first + second)).collect();
+    change(equilibrium, &led, &high.1) <= MISSED * change(equilibrium, &low.1, &high.1)
+}
+
+/// dx/dλ in an equilibrium, where the tangent tells.
+fn rate(equilibrium: &mut Equilibrium<'_>, (load, x): &(f64, Vec<f64>)) -> Option<Vec<f64>> {
+    let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    equilibrium.linearize(*load, x, None, &mut residual, &mut rate).ok()?;
+    equilibrium.solve(*load, &mut rate, true);
+    rate.iter().all(|rate| rate.is_finite()).then_some(rate)
+}
+
+/// The largest change of a node from one state to another: positions in beam lengths, gradients as they are.
+fn change(equilibrium: &Equilibrium<'_>, a: &[f64], b: &[f64]) -> f64 {
+    let n = equilibrium.system().coordinates();
+    let apart: Vec<f64> = a[..n].iter().zip(b).map(|(a, b)| a - b).collect();
+    equilibrium.size(&apart)
+}
+
+/// Looks at the state `x`; whether its tangent could be factorised.
+pub(super) fn look(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
+    let (mut residual, mut rate) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    equilibrium.linearize(load, x, None, &mut residual, &mut rate).is_ok()
+}
+
+/// Stability in the state `x`, where the factorisation tells.
+fn stability(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> Option<Stability> {
+    look(equilibrium, load, x).then(|| equilibrium.stability()).flatten()
+}
+
+/// Whether the state `x` is known to be unstable, or, where loads have no potential, directions lack
+/// stiffness in it.
+fn may_leave(equilibrium: &mut Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
+    look(equilibrium, load, x)
+        && match equilibrium.stability_and_softness() {
+            (_, Some(soft)) => soft > 0,
+            _ => equilibrium.is_unstable() && !is_stiff_without_matrix(equilibrium, load, x),
+        }
+}
+
+/// Whether the softest motion at the last linearised state, the only one that its matrix calls unstable, is stable by products
+/// with the tangent that are evaluated without a matrix: its entries have then lost what resists this motion, as those of a stiff
+/// bar on many elements that hangs.
+fn is_stiff_without_matrix(equilibrium: &Equilibrium<'_>, load: f64, x: &[f64]) -> bool {
+    let system = equilibrium.system();
+    // The products leave out the full turns of torsion springs.
+    let applies = equilibrium.is_symmetric() && !system.has_windings();
+    if !applies || equilibrium.unstable_directions() != Some(1) {
+        return false;
+    }
+    let (q, multipliers) = x.split_at(system.coordinates());
+    let weights = system.weights();
+    let mut v = vec![0.0; x.len()];
+    push(equilibrium, 1.0, &mut v);
+    // The inverse of the matrix leaves the motion with the least stiffness, whatever its sign.
+    let mut by_matrix = 0.0;
+    for _ in 0..INVERSE_ITERATIONS {
+        let size = v.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
+        v.iter_mut().zip(&weights).for_each(|(v, weight)| *v *= weight / size);
+        v[q.len()..].fill(0.0);
+        system.supports().to_frames(load, &mut v[..q.len()]);
+        v.iter_mut().zip(system.fixed()).filter(|(_, fixed)| **fixed).for_each(|(v, _)| *v = 0.0);
+        let mut force = v[..q.len()].to_vec();
+        system.supports().from_frames(load, &mut force);
+        equilibrium.solve(load, &mut v, false);
+        by_matrix = v.iter().zip(&force).map(|(v, f)| v * f).sum();
+    }
+    let (v, mut force) = (&v[..q.len()], vec![0.0; q.len()]);
+    system.tangent_product(load, q, v, &mut force);
+    system.add_constraint_stiffness_product(q, multipliers, v, &mut force);
+    let stiffness: f64 = v.iter().zip(&force).map(|(v, f)| v * f).sum();
+    by_matrix < 0.0 && stiffness > 0.0
+}
+
+/// The equilibrium to which `x` relaxes; `None` where it does not come to rest. Nothing is accepted.
+fn rest(
+    equilibrium: &mut Equilibrium<'_>,
+    load: f64,
+    mut x: Vec<f64>,
+    newton: &Settings,
+    goes_on: &mut dyn FnMut(&Statistics) -> bool,
+) -> Option<Vec<f64>> {
+    let rests = equilibrium.without_trace(|equilibrium| {
+        relax(equilibrium, load, &mut x, newton, &mut Iterations::default(), goes_on).is_ok()
+    });
+    rests.then_some(x)
+}
+
+/// Whether two equilibria are not the same.
+fn differ(equilibrium: &Equilibrium<'_>, a: &[f64], b: &[f64]) -> bool {
+    change(equilibrium, a, b) > SAME_SIDE
+}
+
+/// Perturbs every free coordinate a little and unevenly, in the same way in every run, to one side
+/// or the other.
+fn push(equilibrium: &Equilibrium<'_>, side: f64, x: &mut [f64]) {
+    let system = equilibrium.system();
+    let mut push: Vec<f64> = (1..=system.coordinates())
+        .map(|i| {
+            let unit = if i % 4 == 1 || i % 4 == 2 { system.length() } else { 1.0 };
+            side * PUSH * unit * ((i as f64 * GOLDEN).fract() - 0.4)
+        })
+        .collect();
+    system.supports().to_frames(0.0, &mut push);
+    system.supports().from_frames(0.0, &mut push);
+    x.iter_mut().zip(&push).for_each(|(x, push)| *x += push);
+}

@@ -1,0 +1,94 @@
+//! What only its loads hold comes to rest under each of them: where it jumps from one equilibrium to another on the way, that is told.
+
+use ancf::results::Trajectory;
+use ancf::scene::parse;
+
+/// A shallow arch on hinges.
+const ARCH: &str = "beam.arch = { arc = { center = [0, -1], radius = 1.1, from = 1.9707963267948965, to = 1.1707963267948966 }, axial_stiffness = 1e4, \
+    bending_stiffness = 1, basis.ancf.elements = 24 }\n\
+    probe = [{ name = 'mid', beam = 'arch', at = 0.44 }]\n";
+const HINGES: &str = "{ beam = 'arch', at = 'start', fix = ['x', 'y'] }, { beam = 'arch', at = 'end', fix = ['x', 'y'] }";
+
+fn solve(text: &str) -> Trajectory {
+    let scene = parse("jump.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    scene.model().solve(scene.analysis()).unwrap_or_else(|error| panic!("{error}\n{text}")).into_states()
+}
+
+/// The two load factors between which a warning tells of a jump.
+fn jump(trajectory: &Trajectory) -> Option<[f64; 2]> {
+    trajectory.run.warnings.iter().find_map(|warning| {
+        let loads = warning.strip_prefix("between load factors ")?.split(" the structure jumps").next()?;
+        let (low, high) = loads.split_once(" and ")?;
+        Some([low, high].map(|load| load.parse().expect("a load factor")))
+    })
+}
+
+/// A string that has nothing to do with an arch changes nothing about its critical load, of which the arch alone tells.
+#[test]
+fn a_string_beside_an_arch_does_not_hide_that_it_snaps() {
+    let alone = "effect.force = [{ beam = 'arch', at = 0.44, value = [0, -24] }]\nanalysis.static.steps = 20\n";
+    let alone = solve(&format!("{ARCH}support = [{HINGES}]\n{alone}"));
+    let [lost] = &alone.run.warnings[..] else { panic!("{:?}", alone.run.warnings) };
+    let critical: f64 = lost
+        .strip_prefix("the tangent loses definiteness at load factor ")
+        .and_then(|rest| rest.split(':').next())
+        .and_then(|load| load.parse().ok())
+        .unwrap_or_else(|| panic!("{lost}"));
+    let string = "beam.string = { start = [2, 0], end = [3, 0], axial_stiffness = 10, basis.ancf.elements = 4 }\n";
+    let ends = "{ beam = 'string', at = 'start', fix = ['x', 'y'] }, { beam = 'string', at = 'end', fix = ['x', 'y'] }";
+    for steps in ["", "steps = 8"] {
+        let both = |force: f64| {
+            solve(&format!(
+                "{ARCH}{string}support = [{HINGES}, {ends}]\n\
+                 effect.force = [{{ beam = 'arch', at = 0.44, value = [0, {force}] }}, {{ beam = 'string', distributed = [0, -0.1] }}]\n\
+                 analysis.static = {{ {steps} }}\n"
+            ))
+        };
+        // Two thirds more than it bears, and three quarters of it.
+        let [low, high] = jump(&both(-24.0 * critical / 0.6)).unwrap_or_else(|| panic!("{steps}"));
+        assert!(low <= 0.6 + 1e-4 && high >= 0.6 - 1e-4 && high - low < 1e-3, "{low} to {high}");
+        assert_eq!(jump(&both(-24.0 * critical * 0.75)), None, "{steps}");
+    }
+}
+
+/// A string pulls an arch down: slowly it gives way a little, then it snaps. What a string holds without that changes smoothly, be it
+/// much and fast, as when it first takes its load.
+#[test]
+fn a_string_that_pulls_an_arch_through_says_so() {
+    let pulled = |by: f64, steps: &str| {
+        solve(&format!(
+            "{ARCH}beam.string = {{ start = [0, 0.1], end = [0, -0.4], axial_stiffness = 10, basis.ancf.elements = 2 }}\n\
+             joint = [{{ type = 'hinge', first = {{ beam = 'arch', at = 0.44 }}, second = {{ beam = 'string', at = 'start' }} }}]\n\
+             support = [{HINGES}, {{ beam = 'string', at = 'end', fix = ['x', 'y'], move.y = -{by} }}]\n\
+             analysis.static = {{ {steps} }}\n"
+        ))
+    };
+    for steps in ["", "steps = 5", "steps = 40"] {
+        let [low, high] = jump(&pulled(1.5, steps)).unwrap_or_else(|| panic!("{steps}"));
+        // With a bending stiffness of a thousandth in place of none the path loses its stability at 0.76535.
+        assert!(low < 0.7695 && high > 0.764 && high - low < 1e-3, "{steps}: {low} to {high}");
+        assert_eq!(jump(&pulled(1.0, steps)), None, "{steps}");
+    }
+}
+
+/// A mast that a slack stay and its weight hold leans and rises, and a hinged beam falls by a right angle under the first of its load.
+#[test]
+fn what_changes_fast_does_not_jump() {
+    let mast = solve(
+        "beam.mast = { start = [0, 0], end = [0, 1], axial_stiffness = 1e3, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }
+        beam.stay = { start = [0, 1], end = [-1, 0], axial_stiffness = 100, basis.ancf.elements = 4 }
+        support = [{ beam = 'mast', at = 'start', fix = ['x', 'y'] }, { beam = 'stay', at = 'end', fix = ['x', 'y'] }]
+        joint = [{ type = 'hinge', first = { beam = 'mast', at = 'end' }, second = { beam = 'stay', at = 'start' } }]
+        effect.force = [{ beam = 'mast', at = 'end', value = [20, -1] }]
+        analysis.static = {}\n",
+    );
+    assert_eq!(jump(&mast), None, "{:?}", mast.run.warnings);
+    let beam = solve(
+        "beam.rod = { start = [0, 0], end = [1, 0], axial_stiffness = 100, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 8 }
+        support = [{ beam = 'rod', at = 'start', fix = ['x', 'y'] }]
+        effect.gravity.acceleration = [0, -9.81]
+        effect.force = [{ beam = 'rod', at = 'end', value = [20, 0] }]
+        analysis.static.steps = 3\n",
+    );
+    assert_eq!(jump(&beam), None, "{:?}", beam.run.warnings);
+}
