@@ -517,6 +517,13 @@ mod tests {
          effect.gravity.acceleration = [0, -9.81]\n\
          analysis.dynamic.duration = 0.01\n";
 
+    /// The first example of FIPS 180-2, appendix B.
+    #[test]
+    fn a_digest_is_that_of_the_standard() {
+        let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(sha256(b"abc"), expected);
+    }
+
     fn scene(text: &str) -> Scene {
         parse("arm.toml", text).expect("a scene")
     }

@@ -115,6 +115,9 @@ fn a_stage_that_fails_is_told_in_its_own_results() {
     };
     // What the third has reached is written, too.
     assert_eq!(["one", "two", "three"].map(told), [false, false, true], "{}", stderr(&output));
+    let all = fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
+    let all: serde_json::Value = serde_json::from_str(&all).unwrap();
+    assert_eq!(all["complete"], false);
 }
 
 #[test]

@@ -364,6 +364,18 @@ fn a_short_heated_range_has_the_largest_stress() {
     }
 }
 
+/// A tube of diameter D and wall w bends under a force F at its end: σ = ∓F L (D/2)/I with I = π (D⁴ − (D − 2 w)⁴)/64 at its root.
+#[test]
+fn faces_of_a_tube_carry_what_bends_it() {
+    let section = "youngs_modulus = '1e14 Pa', section.tube = { diameter = 0.02, wall = 0.003 }";
+    let load = "effect.force = [{ beam = 'arm', at = 'end', value = [0, -2] }]";
+    let found = Written::of(&arm(section, load, "ancf.elements = 4"));
+    let stress = 2.0 * 0.01 / (PI * (0.02_f64.powi(4) - 0.014_f64.powi(4)) / 64.0);
+    let [bottom, top] = ["stress_bottom", "stress_top"].map(|name| found.column("shape.csv", name)[0]);
+    near(bottom / -stress, 1.0, 1e-4, "stress_bottom");
+    near(top / stress, 1.0, 1e-4, "stress_top");
+}
+
 /// A column of EI = (1 + s/4)² on hinges: with z = 1 + s/4 its shape is √z sin(β ln z), β = nπ/ln 1.25,
 /// under P = (β² + ¼)/16.
 #[test]

@@ -2,9 +2,9 @@
 //!
 //! # Jumps
 //! What comes to rest under each of the loads goes on beyond a load that its equilibrium cannot bear: it jumps to another one, as an
-//! arch does that is pulled through by a string. That is told. Where two equilibria that follow each other are not led to by the rates
-//! dx/dλ at both, the load between them is halved again and again, always where more of the change happens. What depends on the load
-//! without a jump changes by ever less.
+//! arch does that is pulled through by a string. That is told. Where the rates dx/dλ at two equilibria that follow each other do not lead
+//! from the one to the other, the load between them is gone through in steps in which they do. Where none is short enough for that, the
+//! structure jumps.
 
 use super::{Solution, Turned, is_slack, steps_between};
 use crate::model::Static;
@@ -33,10 +33,14 @@ const TAUT: f64 = 1e-3;
 const SMALLEST_JUMP: f64 = 1e-3;
 /// Part of a change by which rates at both of its ends may miss it.
 const MISSED: f64 = 0.2;
-/// How often the load between two equilibria is halved in search of a jump …
-const HALVINGS: usize = 14;
-/// … which is one where this part of the change is left in the end. A change in proportion to the root of a load is smaller by then.
-const LEFT: f64 = 0.05;
+/// Changes by this part of the whole are no jumps.
+const SMALL_PART: f64 = 0.05;
+/// The first step is this part of the load between two equilibria, …
+const FIRST_PART: f64 = 0.25;
+/// … and the shortest one this; a change in proportion to the root of a load is small in it.
+const SHORTEST_PART: f64 = 6e-5;
+/// Most steps.
+const STEPS: usize = 300;
 
 /// The equilibria at the parts of the load, each relaxed from the one before.
 pub(super) fn relaxed(
@@ -156,29 +160,36 @@ fn jump(
         set_out(equilibrium, load, moved, &mut x);
         rest(equilibrium, load, x, newton, goes_on)
     };
-    let (mut low, mut high) = ((from, start.to_vec()), (to, end.to_vec()));
+    let mut low = (from, start.to_vec());
     if is_slack(equilibrium.system(), start) {
         let load = from + TAUT * (to - from);
         low = (load, rests(equilibrium, (from, start), load)?);
     }
-    let whole = change(equilibrium, &low.1, &high.1);
-    if whole <= SMALLEST_JUMP || leads(equilibrium, [&low, &high]) {
+    let whole = change(equilibrium, &low.1, end);
+    if whole <= SMALLEST_JUMP || leads(equilibrium, [&low, &(to, end.to_vec())]) {
         return None;
     }
-    for _ in 0..HALVINGS {
-        let load = 0.5 * (low.0 + high.0);
-        let middle = rests(equilibrium, (low.0, &low.1), load)?;
-        let parts = [change(equilibrium, &low.1, &middle), change(equilibrium, &middle, &high.1)];
-        if parts[0] >= parts[1] {
-            high = (load, middle);
-        } else {
-            low = (load, middle);
-        }
-        if parts[0].max(parts[1]) <= LEFT * whole {
-            return None;
+    let (shortest, small) = (SHORTEST_PART * (to - low.0), SMALL_PART * whole);
+    let mut step = FIRST_PART * (to - low.0);
+    for _ in 0..STEPS {
+        let load = if low.0 + step < to { low.0 + step } else { to };
+        let next = rests(equilibrium, (low.0, &low.1), load).map(|x| (load, x));
+        let follows = |equilibrium: &mut Equilibrium<'_>, next: &(f64, Vec<f64>)| {
+            change(equilibrium, &low.1, &next.1) <= small || leads(equilibrium, [&low, next])
+        };
+        match next {
+            Some(next) if follows(equilibrium, &next) => {
+                if load == to {
+                    // The end of a long way down may be another one.
+                    return (change(equilibrium, &next.1, end) > small).then_some([from, to]);
+                }
+                (low, step) = (next, 2.0 * step);
+            }
+            next if step <= shortest => return next.map(|next| [low.0, next.0]),
+            _ => step *= 0.5,
         }
     }
-    Some([low.0, high.0])
+    None
 }
 
 /// Whether the rates dx/dλ at two equilibria lead from the one to the other.
