@@ -4,7 +4,7 @@ use crate::model::Model;
 use crate::numeric::plain;
 use crate::results::{Event, Shape};
 use crate::solve::stability::{Stability, StabilityChange};
-use crate::solve::statics::{Solution, UnstableMechanism};
+use crate::solve::statics::{Jump, Solution, UnstableMechanism};
 use crate::system::System;
 use std::f64::consts::PI;
 
@@ -30,13 +30,7 @@ pub fn warnings(solution: &Solution) -> impl Iterator<Item = String> {
              equilibrium: which of them was found is arbitrary; a small load, or a small change of the geometry, decides"
         )
     });
-    let jump = solution.jump.map(|loads| loads.map(|load| plain(load, 6))).map(|[low, high]| {
-        format!(
-            "between load factors {low} and {high} the structure jumps to another equilibrium, in which it is told from there on: beyond a \
-             limit point or a bifurcation it comes to rest where its slow motion ends, which a fast one may pass; the path itself is \
-             followed by `arc_length` where strings have a small bending stiffness, and a motion (`dynamic`) shows where it goes"
-        )
-    });
+    let jump = solution.jump.map(of_jump);
     let start = solution.unstable_start.map(|start| {
         let directions = match start {
             Stability::Directions(1) => "one direction".to_owned(),
@@ -128,6 +122,25 @@ pub fn event(change: &StabilityChange) -> Event {
     }
 }
 
+/// What is said where a structure that is relaxed comes to another equilibrium.
+fn of_jump(jump: Jump) -> String {
+    match jump {
+        Jump::Between([low, high]) => format!(
+            "between load factors {} and {} the structure jumps to another equilibrium, in which it is told from there on: beyond a \
+             limit point or a bifurcation it comes to rest where its slow motion ends, which a fast one may pass; the path itself is \
+             followed by `arc_length` where strings have a small bending stiffness, and a motion (`dynamic`) shows where it goes",
+            plain(low, 6),
+            plain(high, 6)
+        ),
+        Jump::BesidePath(load) => format!(
+            "at load factor {} the structure rests in another equilibrium than smaller steps lead to: which of them is told is chance, as \
+             where a string that weighs nothing is slack and rests anywhere; give such a string its `mass_per_length` and gravity, or \
+             reach the load in more `steps`",
+            plain(load, 6)
+        ),
+    }
+}
+
 /// What is said where directions lose or regain their stiffness.
 fn of_change(change: &StabilityChange) -> String {
     let StabilityChange { load, before, after, .. } = *change;
@@ -160,6 +173,18 @@ fn of_change(change: &StabilityChange) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn jumps_are_told_with_their_loads() {
+        for (jump, start) in [
+            (Jump::Between([0.25, 0.5]), "between load factors 0.250000 and 0.500000 the structure jumps"),
+            (Jump::BesidePath(0.5), "at load factor 0.500000 the structure rests in another equilibrium"),
+        ] {
+            let solution = Solution { jump: Some(jump), ..Solution::default() };
+            let told: Vec<String> = warnings(&solution).collect();
+            assert!(told.len() == 1 && told[0].starts_with(start), "{told:?}");
+        }
+    }
 
     #[test]
     fn a_path_that_comes_back_is_told() {

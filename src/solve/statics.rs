@@ -73,8 +73,8 @@ pub struct Solution {
     /// Load factor at which a mechanism first reached an unstable equilibrium, from which it comes
     /// to rest in one stable equilibrium or in another.
     pub crest: Option<f64>,
-    /// The load factors between which a structure that was relaxed has jumped to another equilibrium.
-    pub jump: Option<[f64; 2]>,
+    /// How a structure that was relaxed first came to another equilibrium than the one to which its path leads.
+    pub jump: Option<Jump>,
     /// Counts.
     pub statistics: Statistics,
     /// Why the path ends before its target, if it does.
@@ -139,6 +139,15 @@ impl Turned {
             self.nodes.iter_mut().zip(turns).for_each(|(sum, turn)| *sum += turn);
         }
     }
+}
+
+/// A way from one equilibrium to another that no path of equilibria is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Jump {
+    /// Between two load factors, where the path ends.
+    Between([f64; 2]),
+    /// Up to a load factor to which a path leads, too, but to another equilibrium.
+    BesidePath(f64),
 }
 
 /// A mechanism whose beams buckle before it moves: the smallest disturbance then decides in which

@@ -95,3 +95,20 @@ fn what_changes_fast_does_not_jump() {
     );
     assert_eq!(jump(&beam), None, "{:?}", beam.run.warnings);
 }
+
+/// A string without weight that is slack rests anywhere: which of its places is told is chance.
+#[test]
+fn a_slack_string_without_weight_says_that_it_rests_anywhere() {
+    let slack = solve(
+        "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 2.2, basis.ancf.elements = 10 }
+        beam.string = { start = [1, 0], end = [1, -0.5], axial_stiffness = 50, basis.ancf.elements = 3 }
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'string', at = 'end', fix = ['x', 'y'], move = { x = -0.0444732, y = -0.0016524 } }]
+        joint = [{ type = 'hinge', first = { beam = 'arm', at = 'end' }, second = { beam = 'string', at = 'start' } }]
+        effect.force = [{ beam = 'arm', at = 0.5, value = [0, -0.2] }]
+        analysis.static.steps = 6\n",
+    );
+    let told = |warning: &String| {
+        warning.contains("rests in another equilibrium") || warning.contains("structure jumps")
+    };
+    assert!(slack.run.warnings.iter().any(told), "{:?}", slack.run.warnings);
+}

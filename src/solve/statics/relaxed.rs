@@ -14,7 +14,7 @@ use crate::solve::newton::{Iterations, Settings};
 use crate::solve::path::NoStep;
 use crate::solve::relax::relax;
 use crate::solve::stability::{Stability, StabilityChange};
-use crate::solve::statics::{Observer, UnstableMechanism};
+use crate::solve::statics::{Jump, Observer, UnstableMechanism};
 use crate::solve::{Statistics, StepRecord, Work};
 
 /// Largest perturbation that pushes a structure off an unstable equilibrium: positions in beam
@@ -146,14 +146,14 @@ fn set_out(equilibrium: &Equilibrium<'_>, load: f64, moved: Option<Vec<f64>>, x:
     }
 }
 
-/// The load factors between which the structure jumps on its way from one equilibrium to the next; `None` also where that is not found.
-/// What was slack takes its shape first.
+/// How the structure jumps on its way from one equilibrium to the next, if it does; `None` also where that is not found. What was slack
+/// takes its shape first.
 fn jump(
     equilibrium: &mut Equilibrium<'_>,
     [(from, start), (to, end)]: [(f64, &[f64]); 2],
     newton: &Settings,
     goes_on: &mut dyn FnMut(&Statistics) -> bool,
-) -> Option<[f64; 2]> {
+) -> Option<Jump> {
     let mut rests = |equilibrium: &mut Equilibrium<'_>, (from, start): (f64, &[f64]), load| {
         let moved = moved(equilibrium, from, load, start);
         let mut x = start.to_vec();
@@ -180,12 +180,12 @@ fn jump(
         match next {
             Some(next) if follows(equilibrium, &next) => {
                 if load == to {
-                    // The end of a long way down may be another one.
-                    return (change(equilibrium, &next.1, end) > small).then_some([from, to]);
+                    // The end of a long way down may be another one, and a slack string without weight rests anywhere.
+                    return (change(equilibrium, &next.1, end) > small).then_some(Jump::BesidePath(to));
                 }
                 (low, step) = (next, 2.0 * step);
             }
-            next if step <= shortest => return next.map(|next| [low.0, next.0]),
+            next if step <= shortest => return next.map(|next| Jump::Between([low.0, next.0])),
             _ => step *= 0.5,
         }
     }
