@@ -112,7 +112,7 @@ pub struct System {
     round_off: f64,
     lowest_vibration: f64,
     has_strings: bool,
-    bends: bool,
+    bending: Vec<bool>,
     goes_slack: bool,
     /// Number of rigid motions that neither supports, joints nor springs resist, where it is known; counted in statics
     /// only.
@@ -210,7 +210,7 @@ impl System {
             stiffness,
             round_off,
             has_strings: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_none()),
-            bends: model.beams.iter().any(|beam| beam.section.bending_stiffness.is_some()),
+            bending: model.beams.iter().map(|beam| beam.section.bending_stiffness.is_some()).collect(),
             goes_slack: model
                 .beams
                 .iter()
@@ -464,9 +464,9 @@ impl System {
         self.has_strings
     }
 
-    /// Whether a beam has a bending stiffness.
-    pub fn bends(&self) -> bool {
-        self.bends
+    /// The beams that have a bending stiffness.
+    pub fn bending_beams(&self) -> impl Iterator<Item = &DiscretizedBeam> {
+        self.beams.iter().zip(&self.bending).filter_map(|(beam, bends)| bends.then_some(beam))
     }
 
     /// Whether an axial law resists tension only, or pressure only, so that a beam with it has no stiffness along its axis where

@@ -559,6 +559,17 @@ mod tests {
         assert_eq!((one.coarser().nodes, one.coarsening()), (vec![0.0, 4.0], None));
     }
 
+    /// What is divided in one place only differs hardly if its long cells are those that were; short ones do not count.
+    #[test]
+    fn a_mesh_hardly_differs_where_its_long_cells_are_the_same() {
+        let of = |nodes: &[f64]| mesh(nodes, &[0.0, 8.0]);
+        let even = of(&[0.0, 2.0, 4.0, 6.0, 8.0]);
+        assert!(!even.hardly_differs_from(&even.halved()));
+        assert!(even.hardly_differs_from(&of(&[0.0, 1.0, 2.0, 4.0, 5.0, 6.0, 7.0, 8.0])));
+        let short = of(&[0.0, 0.125, 4.0, 8.0]);
+        assert!(!short.hardly_differs_from(&of(&[0.0, 0.125, 2.0, 4.0, 6.0, 8.0])));
+    }
+
     /// Of seven cells four are before the node that must be, one between it and the next one, and two behind.
     #[test]
     fn parts_between_nodes_that_must_be_are_coarsened_apart() {

@@ -70,25 +70,28 @@ pub(super) fn out_of_balance(
 mod tests {
     use crate::scene::parse;
 
-    fn warnings(part: f64, force: &str) -> Vec<String> {
+    fn warnings(part: f64, unit: f64, force: f64) -> Vec<String> {
         let (before, behind) = (0.7 - part, 0.7 + part);
         let text = format!(
-            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_stiffness = 1, basis.ancf.nodes = [0, 0.35, {before}, 0.7, {behind}, 1] }}\n\
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = {:e}, bending_stiffness = {unit:e}, basis.ancf.nodes = [0, 0.35, {before}, 0.7, {behind}, 1] }}\n\
              support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'arm', at = 0.7, fix = ['y'] }}]\n\
-             {force}analysis.static = {{}}\n"
+             effect.force = [{{ beam = 'arm', at = 'end', value = [0, {:e}] }}]\nanalysis.static = {{}}\n",
+            1e3 * unit,
+            force * unit
         );
         let scene = parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
         let results = scene.model().solve(scene.analysis()).expect("an equilibrium");
         results.run().warnings.iter().filter(|text| text.contains("balance to")).cloned().collect()
     }
 
-    /// In cells of 10 µm of 1 m beside a support, 12 EI/h³ times the last digit of a position is a force like the load. Without a load no
-    /// force is more than round-off.
+    /// In cells of 10 µm of 1 m beside a support, 12 EI/h³ times the last digit of a position is a force like the load, in whatever
+    /// unit of force. Without a load no force is more than round-off.
     #[test]
     fn round_off_between_near_nodes_is_told() {
-        let load = "effect.force = [{ beam = 'arm', at = 'end', value = [0, -4] }]\n";
-        assert_eq!([warnings(0.1, load), warnings(1e-5, "")], [[""; 0]; 2]);
-        let found = warnings(1e-5, load);
-        assert!(found.len() == 1 && found[0].contains("1.00e-5 m apart"), "{found:?}");
+        for unit in [1e-9, 1.0, 1e9] {
+            assert_eq!([warnings(0.1, unit, -4.0), warnings(1e-5, unit, 0.0)], [[""; 0]; 2]);
+            let found = warnings(1e-5, unit, -4.0);
+            assert!(found.len() == 1 && found[0].contains("1.00e-5 m apart"), "{unit}: {found:?}");
+        }
     }
 }

@@ -192,3 +192,49 @@ pub(super) fn at_corners(model: &Model, now: &[Shape], free: &[Shape]) -> Vec<St
     }
     warnings
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::parse;
+
+    /// A law whose stiffness falls from 2 to 1 N m² where the moment is 1 N m.
+    fn model() -> Model {
+        let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e3, bending_law = { curvature = [-2, -0.5, 0.5, 2], moment = [-2.5, -1, 1, 2.5] }, basis.ancf.nodes = [0, 0.3, 1] }\n\
+                    support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\nanalysis.static = {}\n";
+        parse("scene", text).unwrap_or_else(|error| panic!("{error}")).model().clone()
+    }
+
+    fn shape(moments: &[f64]) -> Shape {
+        let s = (0..moments.len()).map(|i| i as f64 / (moments.len() - 1) as f64).collect();
+        Shape {
+            s,
+            bending_moment: moments.to_vec(),
+            axial_force: vec![0.0; moments.len()],
+            ..Shape::default()
+        }
+    }
+
+    /// A moment of 1.5 (1 − s)² passes the corner once, which the parabola says better than the line between rows does; one that is the corner's but
+    /// for round-off passes it nowhere.
+    #[test]
+    fn cells_are_divided_where_forces_pass_corners() {
+        let model = model();
+        let moment = |s: f64| 1.5 * (1.0 - s) * (1.0 - s);
+        let now = [shape(&[0.0, 0.25, 0.5, 0.75, 1.0].map(moment))];
+        let at = |forces: &dyn Fn(usize, f64) -> Option<[f64; 2]>| {
+            let divided = divided(&model, &now, forces).expect("a corner");
+            jumps_of(&divided).iter().map(|place| place.s).collect::<Vec<f64>>()
+        };
+        let exact = 1.0 - (1.0_f64 / 1.5).sqrt();
+        let found = at(&|_, s| Some([0.0, moment(s)]));
+        assert!(found.len() == 1 && (found[0] - exact).abs() < 1e-9, "{found:?} {exact}");
+        let line = at(&|_, _| None);
+        let between = 0.25 * (1.5 - 1.0) / (1.5 - moment(0.25));
+        assert!(line.len() == 1 && (line[0] - between).abs() < 1e-12, "{line:?} {between}");
+        for sign in [-1.0, 1.0] {
+            let even = [shape(&[1.0 + 1e-13, 1.0 - 1e-13, 1.0 + 1e-13].map(|moment| sign * moment))];
+            assert!(stiffness_jumps(&model, &even).is_empty(), "{sign}");
+        }
+    }
+}

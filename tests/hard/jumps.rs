@@ -74,6 +74,23 @@ fn a_string_that_pulls_an_arch_through_says_so() {
     }
 }
 
+/// What a string does that stretches far is much more than what the arch at its end does, which snaps all the same. With a bending stiffness of
+/// a thousandth of the arch's in place of none the path loses its stability at 0.31835.
+#[test]
+fn an_arch_that_snaps_while_its_string_moves_far_is_told() {
+    for steps in [1, 12] {
+        let found = solve(&format!(
+            "beam.arch = {{ arc = {{ center = [0, -1], radius = 1, from = 1.84725, to = 1.29434 }}, axial_stiffness = 68340, bending_stiffness = 1, basis.ancf.elements = 20 }}
+            beam.string = {{ start = [-0.027639652774, -0.000382048183], end = [0, -0.5], axial_stiffness = 29.927, basis.ancf.elements = 2 }}
+            joint = [{{ type = 'hinge', first = {{ beam = 'arch', at = 0.2488105 }}, second = {{ beam = 'string', at = 'start' }} }}]
+            support = [{HINGES}, {{ beam = 'string', at = 'end', fix = ['x', 'y'], move.y = -1.6395 }}]
+            analysis.static.steps = {steps}\n"
+        ));
+        let [low, high] = jump(&found).unwrap_or_else(|| panic!("{steps}"));
+        assert!(low < 0.3188 && high > 0.3178 && high - low < 1e-3, "{steps}: {low} to {high}");
+    }
+}
+
 /// A mast that a slack stay and its weight hold leans and rises, and a hinged beam falls by a right angle under the first of its load.
 #[test]
 fn what_changes_fast_does_not_jump() {
@@ -94,6 +111,36 @@ fn what_changes_fast_does_not_jump() {
         analysis.static.steps = 3\n",
     );
     assert_eq!(jump(&beam), None, "{:?}", beam.run.warnings);
+}
+
+/// Droppers between two wires are slack before loads have stretched the upper one, and fold from one element to the next: the wires do not jump.
+#[test]
+fn droppers_that_fold_are_no_jump() {
+    let wires = |elements: usize| {
+        solve(&format!(
+            "beam.upper = {{ start = [0, 1], end = [12, 1], axial_stiffness = 2e5, bending_stiffness = 4, mass_per_length = 0.8, basis.ancf.elements = {elements} }}
+            beam.lower = {{ start = [0, 0], end = [12, 0], axial_stiffness = 4e5, bending_stiffness = 60, mass_per_length = 1.2, basis.ancf.elements = {elements} }}
+            beam.left = {{ start = [4, 1], end = [4, 0], axial_stiffness = 5e4, mass_per_length = 0.2, basis.ancf.elements = 4 }}
+            beam.right = {{ start = [8, 1], end = [8, 0], axial_stiffness = 5e4, mass_per_length = 0.2, basis.ancf.elements = 4 }}
+            joint = [
+                {{ type = 'hinge', first = {{ beam = 'upper', at = 4 }}, second = {{ beam = 'left', at = 'start' }} }},
+                {{ type = 'hinge', first = {{ beam = 'lower', at = 4 }}, second = {{ beam = 'left', at = 'end' }} }},
+                {{ type = 'hinge', first = {{ beam = 'upper', at = 8 }}, second = {{ beam = 'right', at = 'start' }} }},
+                {{ type = 'hinge', first = {{ beam = 'lower', at = 8 }}, second = {{ beam = 'right', at = 'end' }} }},
+            ]
+            support = [
+                {{ beam = 'upper', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'upper', at = 'end', fix = ['x', 'y'], move.x = 0.06 }},
+                {{ beam = 'lower', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'lower', at = 'end', fix = ['x', 'y'], move.x = 0.012 }},
+            ]
+            effect.gravity.acceleration = [0, -9.81]
+            effect.force = [{{ beam = 'lower', at = 4, value = [0, 15] }}]
+            analysis.static = {{}}\n"
+        ))
+    };
+    for elements in [6, 24] {
+        let found = wires(elements);
+        assert_eq!(found.run.warnings, [""; 0], "{elements}");
+    }
 }
 
 /// A string without weight that is slack rests anywhere: which of its places is told is chance.

@@ -226,9 +226,11 @@ fn supports_that_jump_are_refused_at_any_time() {
     let error = go_on(&with(jump, 0.03), &first).expect_err("a jump at 0.1 s");
     assert!(error.to_string().contains("t = 0.1 s"), "{error}");
     // A law that is elsewhere when another motion starts from the state.
-    let ramp = "y = '0.1 m', in_time = { ramp = { duration = 0.1 } }";
-    let error = go_on(&with(ramp, 0.01), &first).expect_err("a jump by 0.08 m");
-    assert!(error.to_string().contains("8.000e-2") && error.exit_status() == 2, "{error}");
+    for (moved, by) in [("y = '0.1 m'", "8.000e-2"), ("angle = '90 deg'", "1.257e0")] {
+        let ramp = format!("{moved}, in_time = {{ ramp = {{ duration = 0.1 }} }}");
+        let error = go_on(&with(&ramp, 0.01), &first).expect_err("a jump by 0.08 m or 72 degrees");
+        assert!(error.to_string().contains(by) && error.exit_status() == 2, "{error}");
+    }
 }
 
 /// What a new support holds must be at rest; a state of other beams is none of this scene.

@@ -313,6 +313,28 @@ fn a_bimetal_bends_as_timoshenko_said() {
     }
 }
 
+/// Layers that lie evenly about the centreline have no coupling of stretch and bending but round-off, which is none in any unit; one that is thicker by a
+/// millionth of a millionth has.
+#[test]
+fn even_layers_do_not_couple_stretch_and_bending() {
+    for unit in [1e-9, 1.0, 1e6] {
+        let couples = |top: f64| {
+            let layers: Vec<String> = [(0.1, 7e10), (0.3, 3.1e9), (top, 7e10)]
+                .map(|(height, modulus)| {
+                    format!(
+                        "{{ width = {unit:e}, height = {:e}, youngs_modulus = {modulus:e} }}",
+                        height * unit
+                    )
+                })
+                .into();
+            let section = format!("section.layers = [{}]", layers.join(", "));
+            let scene = parse("layers.toml", &arm(&section, "", "ancf.elements = 4")).expect("a scene");
+            scene.model().beams[0].section.coupling.is_some()
+        };
+        assert_eq!([couples(0.1), couples(0.1 * (1.0 + 1e-12))], [false, true], "{unit}");
+    }
+}
+
 /// Of a strip of two layers one is heated between 0.2 and 0.8 of its length. Nothing holds it, so that the force and the moment of the heat, either
 /// of which is far more than what bends the strip, give it a strain and a curvature there, and its tip lies at the end of an arc. Cells
 /// that bend through a quarter of a right angle follow.
@@ -343,7 +365,7 @@ fn a_heated_layer_bends_long_cells_as_it_should() {
 
 /// One of two equal layers is heated between two of the even places of `shape.csv`. Nothing else acts: with ε₀ the layers strain along
 /// a line ε₀ (1/2 + 3/4 z/H) through their height 2 H, z from their middle, and the stresses of the cold one are E ε₀ (−1/4, 1/2) at its faces,
-/// those of the heated one E ε₀ (−1/2, 1/4).
+/// those of the heated one E ε₀ (−1/2, 1/4). At the ends of the range the tangents of both sides are one; in its middle its strain ε₀/2 is seen.
 #[test]
 fn a_short_heated_range_has_the_largest_stress() {
     let section = "section.layers = [{ width = 0.02, height = 0.01, youngs_modulus = 70e9 }, { width = 0.02, height = 0.01, youngs_modulus = 70e9 }]";
@@ -353,7 +375,10 @@ fn a_short_heated_range_has_the_largest_stress() {
         ["layer", "s", "stress_bottom", "stress_top"].map(|name| found.column("layers.csv", name));
     let within: Vec<usize> =
         (0..s.len()).filter(|i| (0.50119..0.50421).contains(&s[*i]) && top[*i].abs() > 1e6).collect();
-    assert_eq!(within.len(), 4, "{within:?}");
+    assert_eq!(within.len(), 6, "{within:?}");
+    let strains = found.column("shape.csv", "strain");
+    let largest = strains.iter().fold(0.0_f64, |most, strain| most.max(*strain));
+    near(largest / 5e-4, 1.0, 1e-3, "strain");
     for i in within {
         let faces = if layer[i] < 1.5 { [-17.5e6, 35e6] } else { [-35e6, 17.5e6] };
         near(bottom[i], faces[0], 1e4, "stress_bottom");
@@ -361,6 +386,29 @@ fn a_short_heated_range_has_the_largest_stress() {
     }
     for (i, s) in s.iter().enumerate().filter(|(_, s)| !(0.5012..=0.5042).contains(*s)) {
         assert!(bottom[i].abs().max(top[i].abs()) < 1e4, "{s}: {} and {}", bottom[i], top[i]);
+    }
+}
+
+/// What is imposed on a range between two of the even places of `shape.csv` has a row in its middle; where the range has such a place, no other one
+/// is needed.
+#[test]
+fn a_short_range_has_a_row_inside() {
+    for (from, to, rows) in [(0.5012, 0.5042, 202), (0.0, 0.003, 202), (0.4999, 0.5001, 201)] {
+        let load = format!(
+            "effect.actuation = [{{ beam = 'arm', strain = 5e-4, curvature = 2, from = {from}, to = {to} }}]"
+        );
+        let nodes: Vec<String> =
+            [0.0, from, to, 1.0].iter().skip(usize::from(from == 0.0)).map(f64::to_string).collect();
+        let found = Written::of(&arm(
+            "axial_stiffness = 1e6, bending_stiffness = 1",
+            &load,
+            &format!("ancf.nodes = [{}]", nodes.join(", ")),
+        ));
+        let [s, strain, curvature] = ["s", "strain", "curvature"].map(|name| found.column("shape.csv", name));
+        assert_eq!(s.len(), rows, "{from} to {to}");
+        let middle = (0..s.len()).find(|i| (s[*i] - 0.5 * (from + to)).abs() < 1e-9).expect("a row inside");
+        near(strain[middle] / 5e-4, 1.0, 1e-3, "strain");
+        near(curvature[middle] / 2.0, 1.0, 1e-3, "curvature");
     }
 }
 

@@ -75,17 +75,20 @@ mod tests {
     use super::*;
     use crate::accuracy::difference::tests::{meshes, scene};
 
-    /// Cells of 0.5 m and 1.5 m, and halves of them, far from the origin; a string of 1 N.
+    /// Cells of 0.5 m and 1.5 m, in either order, and halves of them, far from the origin; a string of 1 N.
     #[test]
     fn little_tells_nothing_of_a_beam() {
         let shape = Shape { x: vec![1.0, 3.0], y: vec![-8.0, 2.0], ..Shape::default() };
-        let of = |analysis: &str, beam: usize| {
+        let on = |mesh: &Mesh, analysis: &str, beam: usize| {
             let scene = scene(analysis);
-            Negligible::of(&scene.model().beams[beam], &meshes()[beam], &shape, scene.analysis())
+            Negligible::of(&scene.model().beams[beam], mesh, &shape, scene.analysis())
         };
+        let of = |analysis: &str, beam: usize| on(&meshes()[beam], analysis, beam);
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12 * b;
         let still = of("static = {}", 0);
         assert!(near(still.curvature, 2e-14 * 8.0 * 16.0), "{still:?}");
+        let other = on(&Mesh::of(&[0.0, 1.5, 2.0]), "static = {}", 0);
+        assert!(near(other.curvature, still.curvature), "{other:?}");
         assert!(near(still.moment(0.0), 2.0 * still.curvature) && near(still.force, still.curvature));
         assert!(near(still.moment(1e9) - still.moment(0.0), 8e-5), "{still:?}");
         let moving = of("dynamic.duration = 1", 0);

@@ -61,9 +61,9 @@ impl Sampler<'_> {
             _ if self.system.goes_slack() && stuck.load < NEXT_TO_NOTHING => WITHOUT_BOUNDS,
             Failure::Crushed { .. } => TOO_SOFT,
             _ if self.system.is_fading() => {
-                "what held the state with which this analysis starts and has gone fades on the way, that of supports, joints, springs, \
+                "what held the state with which this analysis starts and has gone fades on the way, inertia of a motion, supports, joints, springs, \
                  tendons and everything of another file as forces of fixed directions and couples: let it go in a `[[stage]]` of one file, \
-                 where loads and tendons fade as they are, or in a damped motion, which passes states that are unstable"
+                 where loads and tendons fade as they are; or in a damped motion, which passes states that are unstable and stops by itself"
             }
             _ if self.system.is_floppy() => {
                 "strings and beams on hinges come to rest where loads of fixed direction hold them: let such a load act on all \

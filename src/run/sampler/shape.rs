@@ -1,7 +1,7 @@
 //! Shapes of the beams in a state, and what their sections carry.
 
 use super::Sampler;
-use crate::assembly::{Actions, Side, TendonPath, nodes};
+use crate::assembly::{Actions, Imposed, Side, TendonPath, nodes};
 use crate::model::Beam;
 use crate::results::{LayerStress, ModeShape, Shape};
 use crate::system::{Change, Fields, View, unfold};
@@ -10,14 +10,24 @@ use nalgebra::Vector2;
 /// Places nearer to each other than this, in beam lengths, are one.
 const SAME_PLACE: f64 = 1e-9;
 
-/// The places `even`, and those of `jumps` twice; each with the side of the cut there.
-fn stations(even: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<Side>) {
+/// The places `even`, those of `jumps` twice, and the middle of each part between `breaks` that has no other place; each with the side
+/// of the cut there.
+fn stations(even: &[f64], jumps: &[f64], breaks: &[f64]) -> (Vec<f64>, Vec<Side>) {
     let end = even.last().copied().unwrap_or(0.0);
     let apart = |s: &&f64| jumps.iter().all(|jump| (jump - **s).abs() > SAME_PLACE * end);
     // At the beam's end the cut is before the forces that act there.
     let plain = even.iter().filter(apart).map(|s| (*s, if *s == end { Side::Left } else { Side::Right }));
-    let mut stations: Vec<_> =
-        plain.chain(jumps.iter().flat_map(|s| [(*s, Side::Left), (*s, Side::Right)])).collect();
+    let between = |part: &&[f64]| part[1] - part[0] > 2.0 * SAME_PLACE * end;
+    let unseen = |part: &&[f64]| {
+        let first = even.partition_point(|s| *s <= part[0] + SAME_PLACE * end);
+        even.get(first).is_none_or(|s| *s >= part[1] - SAME_PLACE * end)
+    };
+    let short = breaks.windows(2).filter(between).filter(unseen);
+    let middles = short.map(|part| (0.5 * (part[0] + part[1]), Side::Right));
+    let mut stations: Vec<_> = plain
+        .chain(middles)
+        .chain(jumps.iter().flat_map(|s| [(*s, Side::Left), (*s, Side::Right)]))
+        .collect();
     stations.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     stations.into_iter().unzip()
 }
@@ -129,12 +139,17 @@ impl Sampler<'_> {
             .map(|(beam, (even, actions))| {
                 let part = &self.system.beams()[beam];
                 let length = part.basis.length();
+                let of_section = self.model.beams[beam].section.jumps();
                 let mut jumps = jumps(beam, length);
-                jumps.extend(self.model.beams[beam].section.jumps());
-                jumps.extend(self.jumps_of_layers(beam, length));
-                jumps.sort_by(f64::total_cmp);
-                jumps.dedup_by(|a, b| (*a - *b).abs() <= SAME_PLACE * length);
-                let (s, sides) = stations(even.s(), &jumps);
+                jumps.extend(&of_section);
+                jumps.extend(self.jumps_of_imposed(beam, length, |imposed| imposed.layer.is_some()));
+                let mut breaks = self.jumps_of_imposed(beam, length, |_| true);
+                breaks.extend(of_section.into_iter().chain([0.0, length]));
+                for places in [&mut jumps, &mut breaks] {
+                    places.sort_by(f64::total_cmp);
+                    places.dedup_by(|a, b| (*a - *b).abs() <= SAME_PLACE * length);
+                }
+                let (s, sides) = stations(even.s(), &jumps, &breaks);
                 let more =
                     (s != even.s()).then(|| View::points(&part.basis, part.offset(), &s).ok()).flatten();
                 let mut shape = self.shape_of(beam, more.as_ref().unwrap_or(even), q);
@@ -146,12 +161,14 @@ impl Sampler<'_> {
             .collect()
     }
 
-    /// Where a strain that is imposed on a layer of a beam begins or ends: the stresses jump there.
-    fn jumps_of_layers(&self, beam: usize, length: f64) -> Vec<f64> {
+    /// Where what is imposed on a beam and is `meant` begins or ends. The stresses jump there if it is a strain of a layer. The strain does
+    /// in any case, which at a node, where the tangents of both sides are one, no row shows: only one inside does.
+    fn jumps_of_imposed(&self, beam: usize, length: f64, meant: impl Fn(&Imposed) -> bool) -> Vec<f64> {
         let inner = SAME_PLACE * length..(1.0 - SAME_PLACE) * length;
-        let imposed = self.model.parts.iter().filter_map(|part| part.actuation(beam));
-        let on_layers = imposed.filter(|imposed| imposed.layer.is_some());
-        on_layers.flat_map(|imposed| imposed.strain.jumps()).filter(|s| inner.contains(s)).collect()
+        let imposed = self.model.parts.iter().filter_map(|part| part.actuation(beam)).filter(|i| meant(i));
+        let places =
+            imposed.flat_map(|imposed| [imposed.strain, imposed.curvature]).flat_map(|along| along.jumps());
+        places.filter(|s| inner.contains(s)).collect()
     }
 
     /// Gives rows before a cut the strain and the curvature there: those of a node are the ones behind it.

@@ -7,6 +7,7 @@
 //! structure jumps.
 
 use super::{Solution, Turned, is_slack, steps_between};
+use crate::assembly::DiscretizedBeam;
 use crate::model::Static;
 use crate::numeric::GOLDEN;
 use crate::solve::equilibrium::Equilibrium;
@@ -16,6 +17,8 @@ use crate::solve::relax::relax;
 use crate::solve::stability::{Stability, StabilityChange};
 use crate::solve::statics::{Jump, Observer, UnstableMechanism};
 use crate::solve::{Statistics, StepRecord, Work};
+use crate::system::System;
+use std::ops::Range;
 
 /// Largest perturbation that pushes a structure off an unstable equilibrium: positions in beam
 /// lengths, gradients as they are.
@@ -108,7 +111,8 @@ pub(super) fn relaxed(
         if !sure {
             solution.softened.get_or_insert(load);
         }
-        if solution.jump.is_none() && solution.crest.is_none() && equilibrium.system().bends() {
+        let bends = equilibrium.system().bending_beams().next().is_some();
+        if bends && solution.jump.is_none() && solution.crest.is_none() {
             solution.jump = jump(equilibrium, [(load - step, &start), (load, &x)], &newton, goes_on);
         }
         equilibrium.statistics.load_steps += 1;
@@ -165,23 +169,29 @@ fn jump(
         let load = from + TAUT * (to - from);
         low = (load, rests(equilibrium, (from, start), load)?);
     }
-    let whole = change(equilibrium, &low.1, end);
-    if whole <= SMALLEST_JUMP || leads(equilibrium, [&low, &(to, end.to_vec())]) {
+    let system = equilibrium.system();
+    let [whole, of_beams] = [changes, changes_of_beams].map(|changes| changes(system, &low.1, end));
+    if leads(equilibrium, [&low, &(to, end.to_vec())], changes) {
         return None;
     }
-    let (shortest, small) = (SHORTEST_PART * (to - low.0), SMALL_PART * whole);
+    let are_small = |changes: &[f64], whole: &[f64]| {
+        changes.iter().zip(whole).all(|(change, whole)| *change <= SMALLEST_JUMP.max(SMALL_PART * whole))
+    };
+    let shortest = SHORTEST_PART * (to - low.0);
     let mut step = FIRST_PART * (to - low.0);
     for _ in 0..STEPS {
         let load = if low.0 + step < to { low.0 + step } else { to };
         let next = rests(equilibrium, (low.0, &low.1), load).map(|x| (load, x));
         let follows = |equilibrium: &mut Equilibrium<'_>, next: &(f64, Vec<f64>)| {
-            change(equilibrium, &low.1, &next.1) <= small || leads(equilibrium, [&low, next])
+            are_small(&changes_of_beams(system, &low.1, &next.1), &of_beams)
+                || leads(equilibrium, [&low, next], changes_of_beams)
         };
         match next {
             Some(next) if follows(equilibrium, &next) => {
                 if load == to {
                     // The end of a long way down may be another one, and a slack string without weight rests anywhere.
-                    return (change(equilibrium, &next.1, end) > small).then_some(Jump::BesidePath(to));
+                    let same = are_small(&changes(system, &next.1, end), &whole);
+                    return (!same).then_some(Jump::BesidePath(to));
                 }
                 (low, step) = (next, 2.0 * step);
             }
@@ -192,13 +202,23 @@ fn jump(
     None
 }
 
-/// Whether the rates dx/dλ at two equilibria lead from the one to the other.
-fn leads(equilibrium: &mut Equilibrium<'_>, [low, high]: [&(f64, Vec<f64>); 2]) -> bool {
+/// Whether the rates dx/dλ at two equilibria lead from the one to the other, as far as these `changes` tell.
+fn leads(
+    equilibrium: &mut Equilibrium<'_>,
+    [low, high]: [&(f64, Vec<f64>); 2],
+    changes: fn(&System, &[f64], &[f64]) -> Vec<f64>,
+) -> bool {
+    let system = equilibrium.system();
+    let whole = changes(system, &low.1, &high.1);
+    if whole.iter().all(|change| *change <= SMALLEST_JUMP) {
+        return true;
+    }
     let (Some(first), Some(second)) = (rate(equilibrium, low), rate(equilibrium, high)) else { return false };
     let half = 0.5 * (high.0 - low.0);
     let led: Vec<f64> =
         low.1.iter().zip(first).zip(second).map(|((x, first), second)| x + half * (first + second)).collect();
-    change(equilibrium, &led, &high.1) <= MISSED * change(equilibrium, &low.1, &high.1)
+    let missed = changes(system, &led, &high.1);
+    missed.iter().zip(&whole).all(|(missed, whole)| *missed <= MISSED * whole || *whole <= SMALLEST_JUMP)
 }
 
 /// dx/dλ in an equilibrium, where the tangent tells.
@@ -209,11 +229,27 @@ fn rate(equilibrium: &mut Equilibrium<'_>, (load, x): &(f64, Vec<f64>)) -> Optio
     rate.iter().all(|rate| rate.is_finite()).then_some(rate)
 }
 
-/// The largest change of a node from one state to another: positions in beam lengths, gradients as they are.
-fn change(equilibrium: &Equilibrium<'_>, a: &[f64], b: &[f64]) -> f64 {
-    let n = equilibrium.system().coordinates();
-    let apart: Vec<f64> = a[..n].iter().zip(b).map(|(a, b)| a - b).collect();
-    equilibrium.size(&apart)
+/// The largest change of a node of all beams, strings among them, from one state to another, and [`changes_of_beams`].
+fn changes(system: &System, a: &[f64], b: &[f64]) -> Vec<f64> {
+    let all = change(a, b, 0..system.coordinates() / 4, system.length());
+    std::iter::once(all).chain(changes_of_beams(system, a, b)).collect()
+}
+
+/// The largest change of a node of each beam that has a bending stiffness. What a small one does is not lost beside what others do, and slack strings,
+/// which fold and unfold from one element to the next, do not count: the beams that they hang on hardly feel that.
+fn changes_of_beams(system: &System, a: &[f64], b: &[f64]) -> Vec<f64> {
+    let nodes = |beam: &DiscretizedBeam| beam.first_node..beam.first_node + beam.basis.nodes().len();
+    system.bending_beams().map(|beam| change(a, b, nodes(beam), beam.basis.length())).collect()
+}
+
+/// The largest change of some nodes: positions in this length, gradients as they are.
+fn change(a: &[f64], b: &[f64], nodes: Range<usize>, length: f64) -> f64 {
+    let at = 4 * nodes.start..4 * nodes.end;
+    let pairs = a[at.clone()].as_chunks().0.iter().zip(b[at].as_chunks().0);
+    let apart = |([x, y, u, v], [p, q, r, w]): (&[f64; 4], &[f64; 4])| {
+        ((x - p).hypot(y - q) / length).max((u - r).hypot(v - w))
+    };
+    pairs.map(apart).fold(0.0, f64::max)
 }
 
 /// Looks at the state `x`; whether its tangent could be factorised.
@@ -287,7 +323,8 @@ fn rest(
 
 /// Whether two equilibria are not the same.
 fn differ(equilibrium: &Equilibrium<'_>, a: &[f64], b: &[f64]) -> bool {
-    change(equilibrium, a, b) > SAME_SIDE
+    let system = equilibrium.system();
+    change(a, b, 0..system.coordinates() / 4, system.length()) > SAME_SIDE
 }
 
 /// Perturbs every free coordinate a little and unevenly, in the same way in every run, to one side
