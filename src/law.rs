@@ -519,6 +519,19 @@ mod tests {
         }
     }
 
+    /// What the last digit of a time changes is no more than what a law says that its value may be off by, and not much less where that is all there is.
+    #[test]
+    fn the_last_digit_of_a_time_is_within_the_round_off() {
+        for law in laws().into_iter().chain([Law::Polynomial(vec![-100.3, 1.0])]) {
+            for time in [0.35, 0.9, 3.37, 100.3] {
+                let [now, next] = [time, f64::next_up(time)].map(|time| law.at(time)[0]);
+                assert!((next - now).abs() <= 4.0 * law.round_off(time), "{law:?} at {time}");
+            }
+        }
+        let late = Law::Polynomial(vec![-100.3, 1.0]).round_off(100.3);
+        assert!((late / (100.3 * f64::EPSILON) - 1.0).abs() < 1e-9, "{late}");
+    }
+
     /// ∫₀¹ 10 exp(−(50 (t − ½))²) dt = √π/5, in whatever unit.
     #[test]
     fn fast_laws_are_integrated_in_any_unit() {

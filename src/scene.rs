@@ -295,6 +295,22 @@ fn tables(name: &str, text: &str) -> Result<Scene, Fault> {
 mod tests {
     use super::*;
 
+    /// A scene through one of its stages has this one and those before it.
+    #[test]
+    fn a_scene_ends_with_the_stage_that_is_named() {
+        let text = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1, bending_stiffness = 1, basis.ancf.elements = 2 }\n\
+                    support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+                    stage = [{ name = 'a', analysis.static = {} }, { name = 'b', analysis.static = {} }, { name = 'c', analysis.static = {} }]\n";
+        let scene = parse("scene", text).expect("a scene");
+        let names = |last: &str| -> Option<Vec<String>> {
+            Some(scene.through(last)?.stages().iter().map(|stage| stage.name.clone()).collect())
+        };
+        for (last, expected) in [("a", &["a"][..]), ("b", &["a", "b"]), ("c", &["a", "b", "c"])] {
+            assert_eq!(names(last).expect("a stage"), expected);
+        }
+        assert_eq!(names("d"), None);
+    }
+
     /// Would catch a file that is cut off without a word.
     #[test]
     fn sources_are_read_whole_or_not_at_all() {

@@ -94,17 +94,38 @@ fn curvatures_and_forces_have_accuracies_of_their_own() {
     assert!((curvature / moment - 1.0).abs() <= 1e-3, "{curvature} {moment}");
 }
 
+/// The nodes that are chosen for a scene of one beam.
+fn nodes(text: &str) -> Vec<f64> {
+    let results = run(&scene(text));
+    let chosen = parse("chosen.toml", error(&results).chosen.as_ref().expect("a scene")).expect("legal");
+    let Discretization::Ancf { nodes: Nodes::Given(nodes) } = &chosen.model().beams[0].discretization else {
+        panic!("given nodes")
+    };
+    nodes.clone()
+}
+
 /// A force within the span has a node of its own.
 #[test]
 fn a_force_within_the_span_has_a_node() {
     let rest =
         "effect.force = [{ beam = 'arm', at = 0.37, value = [0, 5] }]\nanalysis.static.accuracy = 1e-5";
-    let results = run(&scene(&cantilever(1e4, 1.0, rest)));
-    let chosen = parse("chosen.toml", error(&results).chosen.as_ref().expect("a scene")).expect("legal");
-    let Discretization::Ancf { nodes: Nodes::Given(nodes) } = &chosen.model().beams[0].discretization else {
-        panic!("given nodes")
-    };
+    let nodes = nodes(&cantilever(1e4, 1.0, rest));
     assert!(nodes.contains(&0.37), "{nodes:?}");
+}
+
+/// So have all places at which the moment of a force, F (L - s) of what hardly bends, passes a corner of the law.
+#[test]
+fn every_corner_of_a_law_has_a_node() {
+    let nodes = nodes(
+        "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e6,\n\
+           bending_law = { curvature = [-1, -0.009, -0.003, 0.003, 0.009, 1], moment = [-20.42, -0.6, -0.3, 0.3, 0.6, 20.42] } }\n\
+         support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+         effect.force = [{ beam = 'arm', at = 'end', value = [0, 1] }]\n\
+         analysis.static.accuracy = 1e-5",
+    );
+    for corner in [0.4, 0.7] {
+        assert!(nodes.iter().any(|s| (s - corner).abs() < 2e-4), "{corner}: {nodes:?}");
+    }
 }
 
 /// Two motions of which the coarse one takes the same steps tell nothing of time.

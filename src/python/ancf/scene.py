@@ -262,14 +262,14 @@ class Scene:
         A change acts from this moment on. A motion that an event stops has no more steps. Where
         the scene leaves its mesh open, it is chosen first, by a run without control.
         """
-        if self.analysis != "dynamic":
+        motion = self._scene.motion
+        if motion is None:
             raise _ancf.SceneError(f"{self.name}: only a motion has steps, and this is a {self.analysis} analysis")
-        scene = self.chosen()
-        duration = _seconds(scene, "duration")
-        every = _seconds(scene, "output_every") if every is None else float(every)
+        duration, output_every = motion
+        every = output_every if every is None else float(every)
         if not 0.0 < every < math.inf:
             raise ValueError(f"`every` is a positive time in seconds, found {every}")
-        return _steps(scene, duration, every, start)
+        return _steps(self.chosen(), duration, every, start)
 
 
 class Step:
@@ -310,10 +310,6 @@ def _steps(scene: Scene, duration: float, every: float, start: Any) -> Iterator[
         if result.time[-1] - result.time[0] < length * (1.0 - 1e-9):
             # An event has stopped the motion.
             return
-
-
-def _seconds(scene: Scene, key: str) -> float:
-    return scene._scene.motion[0 if key == "duration" else 1]
 
 
 def _path(path: str) -> str:

@@ -122,12 +122,12 @@ impl Scene {
         self.scene.model().beams.iter().map(|beam| (beam.name.clone(), length(beam))).collect()
     }
 
-    /// Duration of a motion and the time between its records, in seconds; zeros of other analyses.
+    /// Duration of a motion and the time between its records, in seconds.
     #[getter]
-    fn motion(&self) -> (f64, f64) {
+    fn motion(&self) -> Option<(f64, f64)> {
         match self.scene.analysis() {
-            ancf::Analysis::Dynamic(motion) => (motion.duration, motion.output_every),
-            _ => (0.0, 0.0),
+            ancf::Analysis::Dynamic(motion) => Some((motion.duration, motion.output_every)),
+            _ => None,
         }
     }
 

@@ -48,6 +48,17 @@ def test_a_copy_goes_its_own_way(cantilever: ancf.Scene) -> None:
         assert other != cantilever and cantilever["effect.moment.0.value"] == 3.0
 
 
+def test_what_leaves_nothing_open_is_not_solved_to_be_chosen() -> None:
+    """Nothing holds this beam: a run would fail."""
+    table = arm(support=[])
+    assert ancf.Scene(table).chosen() == ancf.Scene(table)
+    table["analysis"] = {"static": {"accuracy": 1e-3}}
+    assert ancf.Scene(table).chosen() == ancf.Scene(table)
+    del table["beam"]["arm"]["basis"]
+    with pytest.raises(ancf.SceneError, match="under-supported"):
+        ancf.Scene(table).chosen()
+
+
 def test_a_value_that_is_refused_changes_nothing(cantilever: ancf.Scene) -> None:
     before = cantilever.text
     with pytest.raises(ancf.SceneError, match="dimension") as caught:
