@@ -19,8 +19,8 @@ fn stations(even: &[f64], jumps: &[f64], breaks: &[f64]) -> (Vec<f64>, Vec<Side>
     let plain = even.iter().filter(apart).map(|s| (*s, if *s == end { Side::Left } else { Side::Right }));
     let between = |part: &&[f64]| part[1] - part[0] > 2.0 * SAME_PLACE * end;
     let unseen = |part: &&[f64]| {
-        let first = even.partition_point(|s| *s <= part[0] + SAME_PLACE * end);
-        even.get(first).is_none_or(|s| *s >= part[1] - SAME_PLACE * end)
+        let inside = |s: &f64| *s > part[0] + SAME_PLACE * end && *s < part[1] - SAME_PLACE * end;
+        !even.iter().chain(jumps).any(inside)
     };
     let short = breaks.windows(2).filter(between).filter(unseen);
     let middles = short.map(|part| (0.5 * (part[0] + part[1]), Side::Right));
