@@ -22,6 +22,9 @@ use unseen::has_points;
 pub(super) const FINEST: f64 = 1e-13;
 /// Tolerance of the first finer run, in the wanted error.
 const TOLERANCE: f64 = 3.0;
+/// Why a run that goes on from a file has no estimate.
+const SAVED_MESH: &str = "the saved state with which it begins has this mesh and no coarser one to compare with; as a `[[stage]]` of one file \
+    with the analysis that has made the state, both have errors";
 /// Loosest tolerance of the first finer run: beyond, other things than the tolerance decide about
 /// steps.
 const FIRST_TOLERANCE: f64 = 1e-3;
@@ -466,6 +469,7 @@ impl<'a, 'o> Runner<'a, 'o> {
         let mut difference = match &coarse {
             Ok(coarse) if coarse.run().complete => self.difference(coarse, &results),
             Ok(_) => Err("the run on fewer cells was stopped".to_owned()),
+            Err(RunError::Restart(_)) => Err(SAVED_MESH.to_owned()),
             Err(error) => Err(format!("on half as many cells there is no result: {error}")),
         };
         let seen = difference.as_ref().ok();

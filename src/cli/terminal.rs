@@ -347,7 +347,7 @@ fn error_text(error: &ErrorEstimate, analysis: AnalysisKind) -> String {
         }
     }
     let (seconds, runs) = (error.runs.iter().map(|run| run.seconds).sum::<f64>(), error.runs.len());
-    let _ = write!(text, "; {runs} runs in {seconds:.3} s");
+    let _ = write!(text, "; {runs} {} in {seconds:.3} s", if runs == 1 { "run" } else { "runs" });
     text
 }
 

@@ -20,12 +20,24 @@ fn a_motion_goes_on_from_a_saved_state_as_if_it_had_not_stopped() {
     };
     run(&["-o", "whole"]);
     run(&["-o", "first", "--set", "analysis.dynamic.duration=0.12"]);
-    run(&["-o", "second", "--from", "first/state.json", "--set", "analysis.dynamic.duration=0.08"]);
+    run(&[
+        "-o",
+        "second",
+        "--from",
+        "first/state.json",
+        "--set",
+        "analysis.dynamic.duration=0.08",
+        "--error",
+    ]);
     let [whole, second] = ["whole", "second"].map(|name| summary(folder.path(), name));
     for part in ["probes", "last"] {
         assert_eq!(whole[part], second[part], "{part}");
     }
     assert_eq!(second["statistics"]["steps"], 80, "from 0.12 s to 0.2 s");
+    run(&["-o", "third", "--from", "first/state.json", "--set", "analysis.dynamic.duration=0.01", "--error"]);
+    let third = summary(folder.path(), "third");
+    let reason = third["error"]["reason"].as_str().expect("a reason");
+    assert!(reason.contains("no coarser one to compare with"), "{reason}");
 }
 
 #[test]
