@@ -49,14 +49,22 @@ def test_a_copy_goes_its_own_way(cantilever: ancf.Scene) -> None:
 
 
 def test_what_leaves_nothing_open_is_not_solved_to_be_chosen() -> None:
-    """Nothing holds this beam: a run would fail."""
-    table = arm(support=[])
-    assert ancf.Scene(table).chosen() == ancf.Scene(table)
-    table["analysis"] = {"static": {"accuracy": 1e-3}}
-    assert ancf.Scene(table).chosen() == ancf.Scene(table)
-    del table["beam"]["arm"]["basis"]
-    with pytest.raises(ancf.SceneError, match="under-supported"):
-        ancf.Scene(table).chosen()
+    """A force that is asked for tells of a run."""
+    table, asked = arm(), []
+    named = table["beam"]["arm"].pop("basis")
+
+    def force(x: float, y: float, angle: float) -> tuple[float, float]:
+        asked.append(x)
+        return 0.0, 0.0
+
+    for analysis, basis, is_solved in [({}, named, False), ({"accuracy": 1e-3}, named, False), ({"accuracy": 1e-3}, None, True)]:
+        table["analysis"] = {"static": analysis}
+        table["beam"]["arm"].update({} if basis is None else {"basis": basis})
+        scene = ancf.Scene(table)
+        scene.add_force("arm", "end", force)
+        assert "basis" in scene.chosen().text
+        assert bool(asked) == is_solved
+        table["beam"]["arm"].pop("basis", None)
 
 
 def test_a_value_that_is_refused_changes_nothing(cantilever: ancf.Scene) -> None:
