@@ -69,6 +69,8 @@ struct LockingBeam {
     offset: usize,
     /// r' at the points for stretching, r' and r'' at those for bending.
     tables: [BasisTable; 2],
+    /// Whether a strain is imposed, which takes its part of the stretch without a force.
+    actuated: bool,
     /// Per cell, whether an imposed strain jumps at an end of it: shape functions that cannot follow that oscillate, whatever bends.
     jumps: Vec<bool>,
     /// ε and κ of the stress-free state there.
@@ -132,13 +134,14 @@ impl Locking {
                 part.basis.table(rule, orders).map_err(|e| BuildError::basis(&part.name, e))
             };
             let tables = [table(points.stretch_rule(), &[1])?, table(points.bend_rule(), &[1, 2])?];
-            let imposed = model.parts.iter().filter_map(|part| part.actuation(index));
-            let jumps: Vec<f64> = imposed.flat_map(|imposed| imposed.strain.jumps()).collect();
+            let imposed: Vec<_> = model.parts.iter().filter_map(|part| part.actuation(index)).collect();
+            let jumps: Vec<f64> = imposed.iter().flat_map(|imposed| imposed.strain.jumps()).collect();
             let at_jump = |ends: &[f64]| {
                 let near = SAME * (ends[1] - ends[0]);
                 jumps.iter().any(|s| (ends[0] - near..=ends[1] + near).contains(s))
             };
             let mut watched = LockingBeam {
+                actuated: !imposed.is_empty(),
                 jumps: part.basis.nodes().windows(2).map(at_jump).collect(),
                 name: beam.name.clone(),
                 points,
@@ -169,7 +172,7 @@ impl Locking {
     /// energy matters against the work `scale` of the loads \[J\]. `shapes` holds the section
     /// forces.
     pub fn jammed(&self, shapes: &[Shape], scale: f64) -> impl Iterator<Item = String> {
-        let strings = self.beams.iter().filter(|beam| beam.bending_stiffness.is_none());
+        let strings = self.beams.iter().filter(|beam| beam.bending_stiffness.is_none() && !beam.actuated);
         strings.filter_map(move |beam| {
             let shape = shapes.iter().find(|shape| shape.beam == beam.name)?;
             let stretch = beam.seen.last()?[1];
@@ -463,6 +466,7 @@ mod tests {
                 measure: StrainMeasure::Engineering,
                 axial_stiffness: Along::Constant(3e4),
                 bending_stiffness: None,
+                actuated: false,
                 length: 2.0,
                 offset: 0,
                 tables: [BasisTable::default(), BasisTable::default()],

@@ -138,6 +138,11 @@ fn of_jump(jump: Jump) -> String {
              reach the load in more `steps`",
             plain(load, 6)
         ),
+        Jump::Fork(load) => format!(
+            "at load factor {} the structure gives way to one of two sides, between which it has no preference (a bifurcation): which of them \
+             was found is arbitrary; a small load, or a small change of the geometry, decides",
+            plain(load, 6)
+        ),
     }
 }
 
@@ -179,6 +184,7 @@ mod tests {
         for (jump, start) in [
             (Jump::Between([0.25, 0.5]), "between load factors 0.250000 and 0.500000 the structure jumps"),
             (Jump::BesidePath(0.5), "at load factor 0.500000 the structure rests in another equilibrium"),
+            (Jump::Fork(0.5), "at load factor 0.500000 the structure gives way to one of two sides"),
         ] {
             let solution = Solution { jump: Some(jump), ..Solution::default() };
             let told: Vec<String> = warnings(&solution).collect();

@@ -19,6 +19,9 @@ const OF_KINK: f64 = 1.0 / 12.0;
 const PRESSED: f64 = 0.2;
 /// Strains below this are round-off.
 const NO_STRAIN: f64 = 1e-9;
+/// The part of the largest axial force of a structure at rest by which a string may be pressed without a warning: where a slack one folds, shape
+/// functions point back along it.
+const PRESSED_AT_REST: f64 = 0.05;
 
 /// The strings of a motion that resist pressure by a stiffness along their axis, which nothing keeps from folding.
 #[derive(Clone)]
@@ -36,14 +39,42 @@ struct PressedString {
     shortest: (f64, f64, f64),
 }
 
+/// Whether a beam has no bending stiffness, and resists pressure along its axis.
+fn is_pressable(beam: &Beam) -> bool {
+    let section = &beam.section;
+    let resists = section.axial_law.as_ref().is_none_or(|law| !law.goes_slack());
+    section.bending_stiffness.is_none() && resists
+}
+
+/// The warning on every string that is pressed in the last state of statics, by the balance of what acts: its cells are too few to fold, as a
+/// single one is between two ends that approach each other. A tendon presses a string that goes along with it, and does not fold it.
+pub(super) fn pressed_at_rest(model: &Model, last: &[Shape]) -> Vec<String> {
+    let forces = last.iter().flat_map(|shape| &shape.axial_force);
+    let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
+    let beams = model.beams.iter().zip(last).enumerate();
+    let message = |(index, (beam, shape)): (usize, (&Beam, &Shape))| {
+        let has_tendon = || model.parts.iter().filter_map(|part| part.tendon()).any(|(of, ..)| of == index);
+        let rows = shape.axial_force.iter().zip(&shape.s);
+        let (force, s) = rows.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        (-force > PRESSED_AT_REST * largest && is_pressable(beam) && !has_tendon()).then(|| {
+            format!(
+                "string `{}` is pressed by {} N at s = {} m: it has no bending stiffness and gives way to any pressure, but its cells are too few for that, \
+                 and hold what it is tied to; use more elements or nodes, or give it its `bending_stiffness`",
+                beam.name,
+                plain(-force, 4),
+                plain(*s, 4),
+            )
+        })
+    };
+    beams.filter_map(message).collect()
+}
+
 impl Pressed {
     pub(super) fn new(model: &Model) -> Self {
         let is_string = |beam: &&(usize, &Beam)| {
-            let section = &beam.1.section;
-            let resists = section.axial_law.as_ref().is_none_or(|law| !law.goes_slack());
             // What is imposed takes its part of the strain without a force.
             let actuated = model.parts.iter().any(|part| part.actuation(beam.0).is_some());
-            section.bending_stiffness.is_none() && section.axial_stiffness.is_some() && resists && !actuated
+            is_pressable(beam.1) && beam.1.section.axial_stiffness.is_some() && !actuated
         };
         let beams: Vec<(usize, &Beam)> = model.beams.iter().enumerate().collect();
         let string = |&(beam, of): &(usize, &Beam)| PressedString {

@@ -141,13 +141,15 @@ impl Turned {
     }
 }
 
-/// A way from one equilibrium to another that no path of equilibria is.
+/// A way from one equilibrium to another that is no path of equilibria, or not the only one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Jump {
     /// Between two load factors, where the path ends.
     Between([f64; 2]),
     /// Up to a load factor to which a path leads, too, but to another equilibrium.
     BesidePath(f64),
+    /// Along one of two paths that part at a load factor.
+    Fork(f64),
 }
 
 /// A mechanism whose beams buckle before it moves: the smallest disturbance then decides in which

@@ -91,6 +91,124 @@ fn an_arch_that_snaps_while_its_string_moves_far_is_told() {
     }
 }
 
+/// The load factor at which a warning tells that the structure gives way to one of two sides.
+fn fork(trajectory: &Trajectory) -> Option<f64> {
+    trajectory.run.warnings.iter().find_map(|warning| {
+        let (load, _) = warning
+            .strip_prefix("at load factor ")?
+            .split_once(" the structure gives way to one of two sides")?;
+        Some(load.parse().expect("a load factor"))
+    })
+}
+
+/// A column on hinges beside a string that has nothing to do with it: P = π² EI/L² of the length that is left of it under P, and with
+/// 9 N it stands.
+#[test]
+fn a_column_beside_a_string_buckles() {
+    let column = |force: f64, steps: usize| {
+        solve(&format!(
+            "beam.column = {{ start = [0, 0], end = [0, 1], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 16 }}
+            beam.string = {{ start = [2, 0], end = [3, 0], axial_stiffness = 10, basis.ancf.elements = 4 }}
+            support = [{{ beam = 'column', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'column', at = 'end', fix = ['x'] }},
+                {{ beam = 'string', at = 'start', fix = ['x', 'y'] }}, {{ beam = 'string', at = 'end', fix = ['x', 'y'], move.x = 0.1 }}]
+            effect.force = [{{ beam = 'column', at = 'end', value = [0, -{force}] }}]
+            analysis.static.steps = {steps}\n"
+        ))
+    };
+    let critical = std::f64::consts::PI.powi(2) * (1.0 + std::f64::consts::PI.powi(2) / 1e4) / 12.0;
+    for steps in [1, 10] {
+        let told = fork(&column(12.0, steps)).unwrap_or_else(|| panic!("{steps}"));
+        assert!((told / critical - 1.0).abs() < 1e-3, "{steps}: {told} {critical}");
+        assert_eq!(column(9.0, steps).run.warnings, [""; 0], "{steps}");
+    }
+}
+
+/// A mast on a hinge between stays of different lengths that are tightened. With stays of a ten-thousandth of its bending stiffness in place of none
+/// the path loses its stability at 0.61498; beyond, a mast bent to either side has the same energy.
+#[test]
+fn a_mast_between_uneven_stays_gives_way_to_either_side() {
+    let mast = |force: f64, steps: usize| {
+        solve(&format!(
+            "beam.mast = {{ start = [0, 0], end = [0, 1], axial_stiffness = 1302.998416160383, bending_stiffness = 1, basis.ancf.elements = 32 }}
+            beam.left = {{ start = [0, 0.75], end = [-0.49414443346832443, -0.08948692143772209], axial_stiffness = 7582.160792539763, basis.ancf.elements = 2 }}
+            beam.right = {{ start = [0, 0.75], end = [0.7415463125841857, 0.16795181868637857], axial_stiffness = 5806.714588187645, basis.ancf.elements = 2 }}
+            joint = [{{ type = 'hinge', first = {{ beam = 'mast', at = 0.75 }}, second = {{ beam = 'left', at = 'start' }} }},
+                {{ type = 'hinge', first = {{ beam = 'mast', at = 0.75 }}, second = {{ beam = 'right', at = 'start' }} }}]
+            support = [{{ beam = 'mast', at = 'start', fix = ['x', 'y'] }},
+                {{ beam = 'left', at = 'end', fix = ['x', 'y'], move = {{ x = 0.01447989266783096, y = -0.03569943861632446 }} }},
+                {{ beam = 'right', at = 'end', fix = ['x', 'y'], move = {{ x = -0.006242145348346082, y = -0.012169706300390454 }} }}]
+            effect.force = [{{ beam = 'mast', at = 0.4, value = [{force}, 0] }}]
+            analysis.static.steps = {steps}\n"
+        ))
+    };
+    for steps in [1, 20] {
+        let told = fork(&mast(0.0, steps)).unwrap_or_else(|| panic!("{steps}"));
+        assert!((told - 0.614_98).abs() < 2e-4, "{steps}: {told}");
+        // Pushed to a side it goes there.
+        assert_eq!(fork(&mast(0.1, steps)), None, "{steps}");
+    }
+}
+
+/// An arch that snaps while all of its supports move does so where it would if they stood.
+#[test]
+fn supports_that_move_do_not_hide_that_an_arch_snaps() {
+    let moved = |by: f64| {
+        solve(&format!(
+            "beam.arch = {{ arc = {{ center = [0, 0], radius = 1.1, from = 1.8707963267948966, to = 1.2707963267948965 }}, axial_stiffness = 2000, bending_stiffness = 1, basis.ancf.elements = 20 }}
+            beam.string = {{ start = [-0.03299505022274519, 1.0995050371238864], end = [-0.03299505022274519, 0.09950503712388636], axial_stiffness = 30, basis.ancf.elements = 2 }}
+            joint = [{{ type = 'hinge', first = {{ beam = 'arch', at = 0.297 }}, second = {{ beam = 'string', at = 'start' }} }}]
+            support = [{{ beam = 'arch', at = 'start', fix = ['x', 'y'], move.x = {by} }}, {{ beam = 'arch', at = 'end', fix = ['x', 'y'], move.x = {by} }},
+                {{ beam = 'string', at = 'end', fix = ['x', 'y'], move = {{ x = {by}, y = -0.5 }} }}]
+            analysis.static.steps = 1\n"
+        ))
+    };
+    for by in [0.0, 2.0] {
+        let [low, high] = jump(&moved(by)).unwrap_or_else(|| panic!("{by}"));
+        assert!(low < 0.7015 && high > 0.7013 && high - low < 1e-3, "{by}: {low} to {high}");
+    }
+}
+
+/// A mast is pushed aside between two stays. The lee one goes slack, which a string of a single cell cannot: it holds the mast, and says so.
+#[test]
+fn a_stay_whose_cells_cannot_fold_is_told() {
+    let mast = |elements: usize| {
+        solve(&format!(
+            "beam.mast = {{ start = [0, 0], end = [0, 1], axial_stiffness = 1e5, bending_stiffness = 1, basis.ancf.elements = 16 }}
+            beam.windward = {{ start = [0, 1], end = [-0.7, 0], axial_stiffness = 20, basis.ancf.elements = {elements} }}
+            beam.leeward = {{ start = [0, 1], end = [0.7, 0], axial_stiffness = 20, basis.ancf.elements = {elements} }}
+            joint = [{{ type = 'hinge', first = {{ beam = 'mast', at = 'end' }}, second = {{ beam = 'windward', at = 'start' }} }},
+                {{ type = 'hinge', first = {{ beam = 'mast', at = 'end' }}, second = {{ beam = 'leeward', at = 'start' }} }}]
+            support = [{{ beam = 'mast', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'windward', at = 'end', fix = ['x', 'y'] }},
+                {{ beam = 'leeward', at = 'end', fix = ['x', 'y'] }}]
+            probe = [{{ name = 'tip', beam = 'mast', at = 'end' }}]
+            effect.force = [{{ beam = 'mast', at = 'end', value = [1, 0] }}]
+            analysis.static = {{}}\n"
+        ))
+    };
+    let pressed = |found: &Trajectory| {
+        found.run.warnings.iter().any(|warning| warning.starts_with("string `leeward` is pressed by "))
+    };
+    assert!(pressed(&mast(1)));
+    let folds = mast(4);
+    let tip = folds.probes[0].samples.last().expect("a record").x;
+    // A chain of bars and springs, without the lee stay, extrapolated.
+    assert!(!pressed(&folds) && (tip - 0.129_553).abs() < 2e-6, "{tip}: {:?}", folds.run.warnings);
+}
+
+/// A string that an actuation shortens pulls with what it resists, and stores no more than that.
+#[test]
+fn a_string_that_is_shortened_does_not_hold_itself() {
+    let found = solve(
+        "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 8 }
+        beam.string = { start = [1, 0], end = [1, 1], axial_stiffness = 1000, basis.ancf.elements = 4 }
+        joint = [{ type = 'hinge', first = { beam = 'arm', at = 'end' }, second = { beam = 'string', at = 'start' } }]
+        support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }, { beam = 'string', at = 'end', fix = ['x', 'y'] }]
+        effect.actuation = [{ beam = 'string', strain = -0.05 }]
+        analysis.static = {}\n",
+    );
+    assert_eq!(found.run.warnings, [""; 0]);
+}
+
 /// A mast that a slack stay and its weight hold leans and rises, and a hinged beam falls by a right angle under the first of its load.
 #[test]
 fn what_changes_fast_does_not_jump() {

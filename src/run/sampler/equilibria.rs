@@ -71,6 +71,7 @@ impl Sampler<'_> {
         self.see_fields(&mut trajectory.run, &states);
         trajectory.run.warnings.extend(self.folds(&trajectory.last));
         trajectory.run.warnings.extend(strings::kinks(self.model, self.system, &trajectory.last));
+        trajectory.run.warnings.extend(strings::pressed_at_rest(self.model, &trajectory.last));
         let known = solution.work.last().zip(trajectory.energy.last());
         trajectory.run.warnings.extend(known.and_then(|(work, energy)| put_in(work, energy)));
         let work = trajectory.energy.last().map_or(0.0, |energy| energy.potential.abs());
