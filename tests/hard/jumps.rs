@@ -168,6 +168,31 @@ fn supports_that_move_do_not_hide_that_an_arch_snaps() {
     }
 }
 
+/// A spring that is tilted pushes a block up, which a string pulls down and a guide keeps from turning: it snaps through without any change of a
+/// gradient. With the spring's force 100 (1.04403 - l) and EA/L = 5 N/m of the string that is where dy/dλ is infinite.
+#[test]
+fn a_block_that_snaps_without_turning_is_told() {
+    let found = solve(
+        "beam.block = { start = [0, 0.3], end = [0.1, 0.3], axial_stiffness = 1e5, bending_stiffness = 100, basis.ancf.elements = 2 }
+        beam.string = { start = [0.1, 0.3], end = [0.1, -0.7], axial_stiffness = 5, basis.ancf.elements = 2 }
+        joint = [{ type = 'hinge', first = { beam = 'block', at = 'end' }, second = { beam = 'string', at = 'start' } }]
+        support = [{ beam = 'block', at = 'start', fix = ['x', 'angle'] }, { beam = 'string', at = 'end', fix = ['x', 'y'], move.y = -2 }]
+        effect.spring = [{ beam = 'block', at = 'start', anchor = [-1, 0], stiffness = 100, length = 1.04403 }]
+        analysis.static = {}\n",
+    );
+    // The pull 5 (y - 0.3 + 2 λ) that holds the block at y, of which λ is largest where it snaps.
+    let load = |y: f64| {
+        let length = (1.0 + y * y).sqrt();
+        0.5 * (100.0 * (1.04403 - length) * y / length / 5.0 + 0.3 - y)
+    };
+    let critical = (1..300).map(|i| load(f64::from(i) * 1e-3)).fold(0.0, f64::max);
+    let [low, high] = jump(&found).expect("a snap");
+    assert!(
+        low < critical + 1e-3 && high > critical - 1e-3 && high - low < 1e-3,
+        "{low} to {high}: {critical}"
+    );
+}
+
 /// A mast is pushed aside between two stays. The lee one goes slack, which a string of a single cell cannot: it holds the mast, and says so.
 #[test]
 fn a_stay_whose_cells_cannot_fold_is_told() {

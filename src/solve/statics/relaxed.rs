@@ -300,17 +300,18 @@ fn change(system: &System, a: &[f64], b: &[f64]) -> f64 {
     size(system, &apart)
 }
 
-/// The largest change of a gradient of each beam that has a bending stiffness. What a small one does is not lost beside what others do, nor how
-/// it bends beside how far supports move it; and slack strings, which fold and unfold from one element to the next, do not count: the
-/// beams that they hang on hardly feel that.
+/// The largest change of a gradient, and that of a position in beam lengths, of each beam that has a bending stiffness. What a small one does is not
+/// lost beside what others do, nor how it bends beside how far supports move it; and slack strings, which fold and unfold from one element
+/// to the next, do not count: the beams that they hang on hardly feel that.
 fn changes_of_beams(system: &System, a: &[f64], b: &[f64]) -> Vec<f64> {
     let of = |beam: &DiscretizedBeam| {
         let at = 4 * beam.first_node..4 * (beam.first_node + beam.basis.nodes().len());
         let pairs = a[at.clone()].as_chunks().0.iter().zip(b[at].as_chunks().0);
-        let turn = |([_, _, u, v], [_, _, r, w]): (&[f64; 4], &[f64; 4])| (u - r).hypot(v - w);
-        pairs.map(turn).fold(0.0, f64::max)
+        pairs.fold([0.0_f64; 2], |[turn, shift], ([x, y, u, v], [p, q, r, w]): (&[f64; 4], &[f64; 4])| {
+            [turn.max((u - r).hypot(v - w)), shift.max((x - p).hypot(y - q) / beam.basis.length())]
+        })
     };
-    system.bending_beams().map(of).collect()
+    system.bending_beams().flat_map(of).collect()
 }
 
 /// Looks at the state `x`; whether its tangent could be factorised.
