@@ -69,11 +69,11 @@ struct RunArguments {
     /// Directory of the results [default: out/<stem of the scene file>]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Start a motion from the state that a motion or a static run has saved (`state.json` in its
-    /// directory); it lasts for `duration` from there on
+    /// Start from the state that a motion or a static run has saved (`state.json` in its directory): a motion lasts for `duration` from
+    /// there on, what is new in statics grows with the load factor, and vibrations may be about it
     #[arg(long, value_name = "STATE")]
     from: Option<PathBuf>,
-    /// Save the state of a motion every so often by the clock, such as "10 min", into `state.json`
+    /// Save the state of a motion every so often by the clock, such as "10 min" or 600 (seconds), into `state.json`
     /// of the directory, from which `--from` goes on should the run be killed
     #[arg(long, value_name = "TIME", value_parser = duration)]
     checkpoint: Option<Duration>,
@@ -151,7 +151,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     failures.iter().map(Failure::exit_status).max().unwrap_or(0)
 }
 
-/// A positive time with its unit.
+/// A positive time, in seconds where it has no unit.
 fn duration(text: &str) -> Result<Duration, String> {
     Duration::try_from_secs_f64(scene::seconds(text)?).map_err(|error| error.to_string())
 }

@@ -490,6 +490,14 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_study_says_what_an_accuracy_alone_gives() {
+        let options = Options { target: 1e-2, ..Options::default() };
+        let study = study(&arm("analysis.modal.count = 1"), options, &|_| Control::Continue).unwrap();
+        let alone = study.alone.expect("a run for the accuracy alone");
+        assert!(alone.error <= 1e-2 && alone.estimated <= 1e-2, "{} and {}", alone.error, alone.estimated);
+    }
+
     /// The watcher alone takes longer than the half of the budget that the reference may take.
     #[test]
     fn a_reference_that_takes_too_long_is_given_up() {

@@ -510,6 +510,8 @@ mod tests {
             for of in smooth {
                 assert_eq!(written(&format!("{unit}*{of}"), vec![0.3]).jumps(), [], "{unit} {of}");
             }
+            // Far from t = 0 that round-off is larger.
+            assert_eq!(written(&format!("{unit}*sqrt((t-1e9)^2)"), vec![1e9]).jumps(), [], "{unit}");
             let height = PI * unit.parse::<f64>().expect("a number");
             let jumps = written(&format!("{unit}*atan(1/(t-0.3))"), vec![0.3]).jumps();
             assert!(

@@ -9,7 +9,7 @@
 //!
 //! Another scene may start from the state too, with other loads, supports or another integrator: a
 //! motion at rest in the equilibrium that a static run found, or a static run anywhere. Its beams
-//! must be the same: in name, centreline, discretisation, nodes, stiffness and, where both have
+//! must be the same: in name, centreline, discretisation, nodes, measure of strain, stiffness and, where both have
 //! one, mass. The state knows what acted and held in it. In a static run these parts go on to act
 //! in full, while what is new grows with the load factor and what has gone fades. Friction and the full turns of torsion
 //! springs stay where they are, whatever coefficients the other scene has.
@@ -26,7 +26,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 /// Version of the format.
-const FORMAT: u32 = 7;
+const FORMAT: u32 = 8;
 
 /// A state with the beams to which it belongs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,9 +84,12 @@ struct SavedHolding {
 struct SavedBeam {
     name: String,
     centreline: String,
+    /// With the points of quadrature.
     discretization: String,
-    /// EA \[N\] and EI \[N m²\].
-    stiffness: [Option<SavedQuantity>; 2],
+    /// How the axial strain is measured.
+    strain: String,
+    /// EA \[N\], EI \[N m²\] and EB \[N m\].
+    stiffness: [Option<SavedQuantity>; 3],
     /// ρA \[kg/m\].
     mass: Option<SavedQuantity>,
     /// Arc lengths \[m\].
@@ -152,7 +155,7 @@ pub enum RestartError {
     /// The scene has other beams.
     #[error("the saved state does not fit this scene: {what}")]
     #[diagnostic(help(
-        "the beams must have the same names, centrelines, discretisations, nodes and sections in both scenes; supports, loads, joints and the integrator may differ. \
+        "the beams must have the same names, centrelines, discretisations, nodes, sections and measures of strain in both scenes; supports, loads, joints and the integrator may differ. \
          What a scene leaves open for an `accuracy` is in the `chosen.toml` beside the state, which goes on"
     ))]
     Mismatch {
@@ -174,14 +177,16 @@ pub enum RestartError {
 fn layout(model: &Model, system: &System) -> Vec<SavedBeam> {
     let beams = model.beams.iter().zip(system.beams());
     let saved = beams.map(|(beam, part)| {
-        let Beam { name, centreline, section, discretization, .. } = beam;
+        let Beam { name, centreline, section, strain, discretization, gauss_points } = beam;
         SavedBeam {
             name: name.clone(),
             centreline: format!("{centreline:?}"),
-            discretization: format!("{discretization:?}"),
+            discretization: format!("{discretization:?} {gauss_points:?}"),
+            strain: format!("{strain:?}"),
             stiffness: [
                 (&section.axial_stiffness, &section.axial_law),
                 (&section.bending_stiffness, &section.bending_law),
+                (&section.coupling, &None),
             ]
             .map(|(quantity, law)| match law {
                 Some(law) => Some(SavedQuantity::Varying(format!("{law:?}"))),
@@ -448,7 +453,12 @@ impl SavedState {
                 return mismatch(format!("beam `{name}` had another centreline when it was saved"));
             }
             if here.discretization != there.discretization {
-                return mismatch(format!("beam `{name}` had another discretisation when it was saved"));
+                return mismatch(format!(
+                    "beam `{name}` had another discretisation, or other points of quadrature, when it was saved"
+                ));
+            }
+            if here.strain != there.strain {
+                return mismatch(format!("beam `{name}` had another measure of `strain` when it was saved"));
             }
             if here.stiffness != there.stiffness || masses.is_some_and(|(here, there)| here != there) {
                 return mismatch(format!("beam `{name}` had another section when it was saved"));
@@ -625,6 +635,17 @@ mod tests {
                 "another centreline",
             ),
             (ARM.replace("ancf.elements = 2", "rpim.nodes = 3"), "another discretisation"),
+            (
+                ARM.replace(
+                    "elements = 2",
+                    "elements = 2, basis.ancf.gauss_points = { stretch = 5, bend = 3 }",
+                ),
+                "or other points of quadrature",
+            ),
+            (
+                ARM.replace("mass_per_length", "strain = 'green', mass_per_length"),
+                "another measure of `strain`",
+            ),
             (ARM.replace("axial_stiffness = 1e3", "axial_stiffness = 2e3"), "another section"),
             (ARM.replace("bending_stiffness = 0.1", "bending_stiffness = 0.2"), "another section"),
             (ARM.replace("mass_per_length = 1", "mass_per_length = 2"), "another section"),

@@ -1,5 +1,6 @@
 //! One model, one analysis: build, solve, and look at the states.
 
+mod coils;
 mod electrodes;
 mod error;
 mod events;

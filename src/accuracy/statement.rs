@@ -230,6 +230,7 @@ mod tests {
         // Where it only just reaches its value, t²/2 q'' = 1/2.
         assert_eq!(of("x", None, [0.0, 4.0], 0.0), (0.5, None));
         assert_eq!(of("y", Some("maximum"), [0.0, -8.0], 0.0), (0.125, Some(0.25)));
+        assert_eq!(of("x", Some("minimum"), [0.0, 8.0], 0.0), (0.25, Some(0.5)));
         assert_eq!(of("vx", Some("minimum"), [0.0, 8.0], 0.0), (1.0, Some(2.0)));
         assert_eq!(of("speed", None, [8.0, 0.0], 0.0), (0.25, None));
         assert_eq!(of("bending_moment", None, [8.0, 0.0], 0.0), (0.5, None));

@@ -224,3 +224,25 @@ impl Spread {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In a beam of any length, places that are the same but for round-off are one; the ends are none, nor is where nothing acts.
+    #[test]
+    fn section_forces_jump_where_something_acts_inside_a_beam() {
+        for length in [0.01, 1.0, 40.0] {
+            let mut actions = Actions::default();
+            for part in [0.75, 0.0, 0.25, 0.75 + 5e-10, 0.25 + 2e-9, 1.0] {
+                actions.add_point(part * length, Action::couple(1.0));
+            }
+            actions.add_point(0.5 * length, Action::default());
+            assert_eq!(
+                actions.jumps(length),
+                [0.25, 0.25 + 2e-9, 0.75].map(|part| part * length),
+                "{length} m"
+            );
+        }
+    }
+}

@@ -124,7 +124,7 @@ impl<'a> Assembly<'a> {
         density: impl FnOnce(Vec<[Vector2<f64>; M]>) -> D,
     ) -> Result<(), BuildError> {
         if law.is_some() && !self.needs.motion && !self.has_gone() {
-            return Err(BuildError::NoTime { what: "a load" });
+            return Err(BuildError::NoTime { what: format!("a load (`{}`)", kind.name()) });
         }
         let effect = self.effect(kind, &extent, density)?;
         self.terms.loads.push(ActingLoad { effect, amplitude: self.acting.amplitude(law) });
@@ -227,7 +227,7 @@ impl<'a> Assembly<'a> {
         D: Density<N> + 'static,
     {
         if law.is_some() && !self.needs.motion {
-            return Err(BuildError::NoTime { what: "a tendon" });
+            return Err(BuildError::NoTime { what: "a tendon".to_owned() });
         }
         let sums = [
             self.effect(Kind::Tendon, &centreline.0, |_| centreline.1)?,
@@ -261,7 +261,7 @@ impl<'a> Assembly<'a> {
     /// [`BuildError::NoTime`] in an analysis without time.
     pub fn timed_load(&mut self, what: &'static str, load: Box<dyn TimedLoad>) -> Result<(), BuildError> {
         if !self.needs.motion {
-            return Err(BuildError::NoTime { what });
+            return Err(BuildError::NoTime { what: what.to_owned() });
         }
         self.terms.timed_loads.push(load);
         Ok(())

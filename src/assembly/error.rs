@@ -81,11 +81,11 @@ pub enum BuildError {
     /// An item follows a law of time in an analysis without time.
     #[error("{what} follows a law of time, which this analysis does not have")]
     #[diagnostic(help(
-        "leave `in_time` out, or use [analysis.dynamic]; in a scene with stages let it begin with a motion, by `stage = \"…\"`"
+        "leave `in_time`, or what moves along a beam, out, or use [analysis.dynamic]; in a scene with stages let it begin with a motion, by `stage = \"…\"`"
     ))]
     NoTime {
         /// The item that follows a law.
-        what: &'static str,
+        what: String,
     },
     /// The two points of a joint do not coincide.
     #[error(

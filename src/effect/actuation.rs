@@ -46,8 +46,8 @@ pub struct Actuation {
 
 impl Part for Actuation {
     fn add_to(&self, assembly: &mut Assembly<'_>) -> Result<(), BuildError> {
-        let beam = assembly.beam("pre-strain", self.beam)?;
-        let lacks = |quantity| BuildError::missing(beam, quantity, "pre-strain");
+        let beam = assembly.beam("an `actuation`", self.beam)?;
+        let lacks = |quantity| BuildError::missing(beam, quantity, "an `actuation`");
         if !beam.section.is_linear() {
             return Err(lacks("stiffness that is a number"));
         }

@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn short_pulses_are_found() {
         for width in [1e-2, 1e-4, 1e-6, 1e-9, 1e-12] {
-            for text in ["", "1e-3*sin(0.3*t) + ", "0.3*t - ", "2*tanh(t-7) + "] {
+            for text in ["", "1e-3*sin(0.3*t) + ", "0.3*t - ", "2*tanh(t-7) + ", "1e6 - ", "-1e6 + "] {
                 let pulse = format!("{text}10*exp(-((t-50.1234)/{width:e})^2)");
                 let near = |t: &&f64| (*t - 50.1234).abs() < 3.0 * width;
                 let found = turns(&pulse, [0.0, 100.0]).iter().filter(near).count();

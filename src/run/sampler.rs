@@ -6,6 +6,7 @@ mod failure;
 mod motion;
 mod shape;
 
+use super::coils::coils;
 use super::locking::Locking;
 use super::loose::Loose;
 use super::{Detail, RunError};
@@ -139,6 +140,7 @@ impl<'a> Sampler<'a> {
                 .into_iter()
                 .chain(strings::couples(self.model))
                 .chain(surfaces::couples(self.model, self.system))
+                .chain(coils(self.model))
                 .collect(),
             settings: self.settings(),
             undeformed,

@@ -6,6 +6,23 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::Fault;
 use super::reader;
+use super::schema::{NAME, is_like, paths_to, required_at};
+
+/// Symbols and names of others for keys.
+const OTHER_NAMES: [(&str, &str); 10] = [
+    ("E", "youngs_modulus"),
+    ("EA", "axial_stiffness"),
+    ("EI", "bending_stiffness"),
+    ("A", "area"),
+    ("I", "second_moment"),
+    ("rho", "density"),
+    ("end_time", "duration"),
+    ("t_end", "duration"),
+    ("sine", "harmonic"),
+    ("cosine", "harmonic"),
+];
+/// Most places of a key that are told.
+const PLACES: usize = 4;
 
 /// The fault behind an error of the TOML syntax.
 pub(super) fn syntax(error: &toml::de::Error, text: &str) -> Fault {
@@ -38,7 +55,13 @@ pub(super) fn data(error: &reader::Error, document: &DeTable<'_>) -> Fault {
         let table = path.rsplit_once('.').map(|(table, _)| table);
         let place = table.map_or("at the top of the scene".to_owned(), |table| format!("in `{table}`"));
         let fault = Fault::new(span, format!("unknown key `{found}` {place}"));
-        return if legal.is_empty() { fault } else { fault.help(choices("legal keys", &found, &legal)) };
+        let other =
+            OTHER_NAMES.into_iter().find(|(other, _)| *other == found).map_or(found.as_str(), |(_, key)| key);
+        return match elsewhere(&found, &keys_of(table.unwrap_or_default())) {
+            Some(there) => fault.help(format!("{there} legal keys: {}", legal.join(", "))),
+            None if legal.is_empty() => fault,
+            None => fault.help(choices("legal keys", other, &legal)),
+        };
     }
     if let Some(rest) = first.strip_prefix("unknown variant ") {
         let (found, legal) = quoted(rest);
@@ -70,14 +93,40 @@ pub(super) fn data(error: &reader::Error, document: &DeTable<'_>) -> Fault {
             None => message,
         };
     let place = if path.is_empty() { String::new() } else { format!("`{path}`: ") };
-    let help = list_form(&path, &message)
-        .or_else(|| table_form(&path, &message))
+    let help = nameless_beam(&path, &message)
+        .or_else(|| list_form(&path, &message))
+        .or_else(|| table_form(&path, &message, document))
         .or((!rest.is_empty()).then(|| rest.to_owned()));
     let fault = Fault::new(span, format!("{place}{message}"));
     match help {
         Some(help) => fault.help(help),
         None => fault,
     }
+}
+
+/// A path without the numbers of lists.
+fn keys_of(path: &str) -> Vec<String> {
+    path.split('.')
+        .filter(|key| !key.is_empty() && key.parse::<usize>().is_err())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// The paths at which the key that was `found` in a `table` that does not know it is legal: within this table, or elsewhere, if these are few.
+fn elsewhere(found: &str, table: &[String]) -> Option<String> {
+    let all = paths_to(found);
+    let within = |path: &&Vec<String>| path.len() > table.len() && is_like(&path[..table.len()], table);
+    let here: Vec<String> = all.iter().filter(within).map(|path| path[table.len()..].join(".")).collect();
+    let places = if here.is_empty() { all.iter().map(|path| path.join(".")).collect() } else { here };
+    let few = (1..=PLACES).contains(&places.len());
+    few.then(|| format!("did you mean {}?", list(&places, '`')))
+}
+
+/// How to write a beam, where keys of one stand in place of its name.
+fn nameless_beam(path: &str, message: &str) -> Option<String> {
+    let key = path.strip_prefix("beam.").filter(|_| message.ends_with("expected a table"))?;
+    let of_beams = paths_to(key).into_iter().any(|path| path == ["beam", NAME, key]);
+    of_beams.then(|| format!("every beam has a name: write `[beam.NAME]`, and `{key}` below it"))
 }
 
 /// How to write a list, where one is expected and something else was found: an array of tables
@@ -93,13 +142,24 @@ fn list_form(path: &str, message: &str) -> Option<String> {
         Some(text) => text.to_owned(),
         None => found.split('`').nth(1).unwrap_or("…").to_owned(),
     };
+    if key == "fix" {
+        return Some(
+            "write a list of what is fixed: `fix = [\"x\", \"y\", \"angle\"]` for a clamp".to_owned(),
+        );
+    }
     Some(format!("write a list, also of one: `{key} = [{value}]`"))
 }
 
-/// How to write a table, where one is expected and a list was found.
-fn table_form(path: &str, message: &str) -> Option<String> {
-    if message != "found sequence, expected a table" {
-        return None;
+/// How to write a table, where one is expected and something else was found.
+fn table_form(path: &str, message: &str, document: &DeTable<'_>) -> Option<String> {
+    message.strip_suffix("expected a table")?;
+    let keys: Vec<String> = path.split('.').map(str::to_owned).collect();
+    let key = keys.last().filter(|key| key.parse::<usize>().is_err());
+    if let Some(key) = key.filter(|_| path != "beam" && !holds_tables(document, &keys)) {
+        let required = required_at(&keys_of(path));
+        let entries: Vec<String> = required.iter().map(|key| format!("{key} = …")).collect();
+        let entries = if entries.is_empty() { "key = value, …".to_owned() } else { entries.join(", ") };
+        return Some(format!("write a table: `{key} = {{ {entries} }}`"));
     }
     let within_list = path.split('.').any(|part| part.parse::<usize>().is_ok());
     Some(match path {
@@ -149,15 +209,23 @@ pub(super) fn path_at(document: &DeTable<'_>, span: &Range<usize>) -> Vec<String
 
 /// Whether the value at `path` is a list.
 fn is_list(document: &DeTable<'_>, path: &[String]) -> bool {
-    let Some((first, rest)) = path.split_first() else { return false };
-    let value = rest.iter().try_fold(document.get(first.as_str()), |value, part| {
-        Some(match value?.get_ref() {
-            DeValue::Table(table) => table.get(part.as_str()),
-            DeValue::Array(items) => items.get(part.parse::<usize>().ok()?),
-            _ => None,
-        })
+    matches!(value_at(document, path), Some(DeValue::Array(_)))
+}
+
+/// Whether the value at `path` is a list of tables.
+fn holds_tables(document: &DeTable<'_>, path: &[String]) -> bool {
+    let Some(DeValue::Array(items)) = value_at(document, path) else { return false };
+    items.iter().any(|item| matches!(item.get_ref(), DeValue::Table(_)))
+}
+
+fn value_at<'a>(document: &'a DeTable<'_>, path: &[String]) -> Option<&'a DeValue<'a>> {
+    let (first, rest) = path.split_first()?;
+    let value = rest.iter().try_fold(document.get(first.as_str())?, |value, part| match value.get_ref() {
+        DeValue::Table(table) => table.get(part.as_str()),
+        DeValue::Array(items) => items.get(part.parse::<usize>().ok()?),
+        _ => None,
     });
-    value.flatten().is_some_and(|value| matches!(value.get_ref(), DeValue::Array(_)))
+    Some(value?.get_ref())
 }
 
 type See<'a> = &'a mut dyn FnMut(&[String], Range<usize>);

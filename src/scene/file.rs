@@ -79,7 +79,8 @@ pub struct BeamTable {
     pub end: Option<Located<Vector<Length>>>,
     /// Part of a circle.
     pub arc: Option<Located<ArcTable>>,
-    /// A smooth curve through these points, in order.
+    /// A smooth curve through these points, in order: the cubic spline whose third derivative does not jump at
+    /// the second point and the last but one, through three points a parabola.
     #[schemars(length(min = 2))]
     pub points: Option<Located<Vec<Located<Vector<Length>>>>>,
     /// Where the beam is at the start of the analysis, if not in its stress-free shape.
@@ -125,7 +126,8 @@ pub struct InitialShapeTable {
     pub line: Option<Located<LineTable>>,
     /// Part of a circle.
     pub arc: Option<Located<ArcTable>>,
-    /// A smooth curve through these points, in order.
+    /// A smooth curve through these points, in order: the cubic spline whose third derivative does not jump at
+    /// the second point and the last but one, through three points a parabola.
     #[schemars(length(min = 2))]
     pub points: Option<Located<Vec<Located<Vector<Length>>>>>,
 }
@@ -191,8 +193,7 @@ pub struct AncfTable {
     pub gauss_points: Option<GaussPointsTable>,
 }
 
-/// Hermite radial point interpolation. What is left out takes values that were chosen by
-/// measurement.
+/// Hermite radial point interpolation. What is left out was chosen by measurement.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RpimTable {
@@ -200,15 +201,15 @@ pub struct RpimTable {
     pub nodes: Located<NodeList>,
     /// How counted nodes are spaced.
     pub spacing: Option<Located<SpacingName>>,
-    /// Radial function: exactly one kind.
+    /// Radial function: exactly one kind; the multiquadric with q = 1.03 and `shape` 5 when left out.
     pub kernel: Option<Located<KernelTable>>,
-    /// Polynomial terms 1, s, s², … of the interpolation.
+    /// Polynomial terms 1, s, s², … of the interpolation; two when left out.
     pub polynomial_terms: Option<Located<Count<1>>>,
-    /// Sign of the slope terms in the side conditions.
+    /// Sign of the slope terms in the side conditions; `plus` when left out.
     pub side_condition: Option<SideConditionName>,
-    /// Nodes beyond the cell's own two, on each side.
+    /// Nodes beyond the cell's own two, on each side; two when left out.
     pub neighbours: Option<Located<Count<0>>>,
-    /// Gauss points in every cell between neighbouring nodes.
+    /// Gauss points in every cell between neighbouring nodes; 4/4 when left out.
     pub gauss_points: Option<GaussPointsTable>,
 }
 

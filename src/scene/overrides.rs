@@ -234,6 +234,14 @@ fn child<'a>(
         let keys: Vec<String> =
             item.as_table_like().map(|t| t.iter().map(|(k, _)| k.to_owned()).collect()).unwrap_or_default();
         let absent = !keys.iter().any(|k| k == key);
+        if absent && keys.is_empty() && key.parse::<usize>().is_ok() {
+            return Err((
+                format!("the scene has no {there}, of which this would be number {key}"),
+                format!(
+                    "an override changes what is there: write `[[{so_far}]]` into the scene, or give the whole list, as `{so_far}=[{{ … }}]`"
+                ),
+            ));
+        }
         if absent && !may_add {
             return Err((format!("{there} has no `{key}`"), choices("it has", key, &keys)));
         }

@@ -61,8 +61,10 @@ measures! {
     Moment: "moment", "N m", "3 kN m", Dimension::new(2, 1, -2);
     /// Force per length \[N/m\].
     ForcePerLength: "force per length", "N/m", "5 N/mm", Dimension::new(0, 1, -2);
+    /// Force per length and displacement \[N/m²\].
+    StiffnessPerLength: "stiffness per length", "N/m^2", "1e5 N/m^2", Dimension::new(-1, 1, -2);
     /// Acceleration \[m/s²\].
-    Acceleration: "acceleration", "m/s^2", "9.81 m/s^2", Dimension::new(1, 0, -2);
+    Acceleration: "acceleration", "m/s^2", "-9.81 m/s^2", Dimension::new(1, 0, -2);
     /// Velocity \[m/s\].
     Velocity: "velocity", "m/s", "2 m/s", Dimension::new(1, 0, -1);
     /// Angular velocity \[rad/s\].

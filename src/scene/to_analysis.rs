@@ -226,6 +226,10 @@ fn known_probe<'m>(probe: &Located<String>, model: &'m Model) -> Result<&'m Prob
     let name = probe.get();
     model.probes.iter().find(|probe| probe.name == *name).ok_or_else(|| {
         let names: Vec<String> = model.probes.iter().map(|probe| probe.name.clone()).collect();
+        if names.is_empty() {
+            return Fault::new(probe.span(), format!("there is no probe named `{name}`, nor any other"))
+                .help(format!("add `[[probe]]` with `name = \"{name}\"`, a `beam` and a place `at` on it"));
+        }
         Fault::new(probe.span(), format!("there is no probe named `{name}`")).help(choices(
             "probes of this scene",
             name,

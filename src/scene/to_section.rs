@@ -182,6 +182,9 @@ fn linear_section(label: &str, table: &BeamTable, length: f64) -> Result<Section
         top: shape.half_height,
         stiffness: None,
     });
+    if e.is_none() {
+        modulus_is_not_missed(label, table)?;
+    }
     let (with_modulus, with_density) = ((&e, "youngs_modulus"), (&density, "density"));
     Ok(Section {
         axial_stiffness: either(ea, "axial_stiffness", with_modulus, (&area, "area"))?,
@@ -192,6 +195,29 @@ fn linear_section(label: &str, table: &BeamTable, length: f64) -> Result<Section
         layers: layers.into_iter().collect(),
         ..Section::default()
     })
+}
+
+/// Refuses a beam without elastic modulus that has a second moment and no other bending stiffness, or the shape or the area of a section and no
+/// stiffness at all. It would be a string, one that keeps its length at that: more likely the modulus was forgotten.
+fn modulus_is_not_missed(label: &str, table: &BeamTable) -> Result<(), Fault> {
+    let stretches = table.axial_stiffness.is_some() || table.axial_law.is_some();
+    let bends = table.bending_stiffness.is_some() || table.bending_law.is_some();
+    let second_moment = table.second_moment.as_ref().map(|given| ("a `second_moment`", given.span()));
+    let shape = table.section.as_ref().map(|given| ("a `section`", given.span()));
+    let area = table.area.as_ref().map(|given| ("an `area`", given.span()));
+    let missed = match (bends, stretches) {
+        (true, _) => None,
+        (false, true) => second_moment,
+        (false, false) => second_moment.or(shape).or(area),
+    };
+    let Some((what, span)) = missed else { return Ok(()) };
+    let (key, other) =
+        if stretches { ("bend", "`bending_stiffness`") } else { ("stretch or bend", "stiffnesses") };
+    let message = format!("beam `{label}` has {what} but no `youngs_modulus`: is it to {key}?");
+    Err(Fault::new(span, message).help(format!(
+        "give `youngs_modulus`, or {other} of its own; or, for a string that resists nothing but a change of its length, `mass_per_length` in place of \
+         all that tells of its section"
+    )))
 }
 
 fn twice(label: &str, key: &str, other: &str, span: Range<usize>) -> Fault {

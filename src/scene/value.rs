@@ -235,7 +235,8 @@ impl<M: Measure> Vector<M> {
     /// `two components [x, y] in m, such as [0.0, "1.8 m"]`.
     pub fn expected() -> String {
         let unit = if M::SI.is_empty() { String::new() } else { format!(" in {}", M::SI) };
-        format!("two components [x, y]{unit}, such as [0.0, \"{}\"]", M::EXAMPLE)
+        let example = if M::SI.is_empty() { "1.0".to_owned() } else { format!("{:?}", M::EXAMPLE) };
+        format!("two components [x, y]{unit}, such as [0.0, {example}]")
     }
 
     /// The message about `count` components.

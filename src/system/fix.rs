@@ -57,7 +57,11 @@ pub(super) fn fix(
         let moves = support.displacement != Displacement::default();
         match (needs.motion, &support.law) {
             (true, None) if moves => return Err(BuildError::NoLaw { beam: part.name.clone(), s }),
-            (false, Some(_)) => return Err(BuildError::NoTime { what: "a support" }),
+            (false, Some(_)) => {
+                return Err(BuildError::NoTime {
+                    what: format!("the support of beam `{}` at s = {s} m", part.name),
+                });
+            }
             (true, Some(_)) if moves && part.basis.node_at(s).is_none() => {
                 return Err(BuildError::MovesBetweenNodes { beam: part.name.clone(), s });
             }

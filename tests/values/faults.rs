@@ -54,6 +54,27 @@ const CASES: &[Case] = &[
         "6:18: beam `arm` has a `youngs_modulus` but no `area`: is it to stretch?",
     ),
     (
+        "area without modulus",
+        &[(
+            "axial_stiffness = 1e4\nbending_stiffness = 2.0\nmass_per_length = 0.5",
+            "area = 2.0\ndensity = 4.0",
+        )],
+        "6:8: beam `arm` has an `area` but no `youngs_modulus`: is it to stretch or bend?",
+    ),
+    (
+        "section without modulus",
+        &[(
+            "axial_stiffness = 1e4\nbending_stiffness = 2.0\nmass_per_length = 0.5",
+            "density = 4.0\nsection.circle.diameter = 0.1",
+        )],
+        "7:1: beam `arm` has a `section` but no `youngs_modulus`: is it to stretch or bend?",
+    ),
+    (
+        "second moment without modulus",
+        &[("bending_stiffness = 2.0", "second_moment = 2.0")],
+        "7:17: beam `arm` has a `second_moment` but no `youngs_modulus`: is it to bend?",
+    ),
+    (
         "no mass to vibrate",
         &[("mass_per_length = 0.5\n", ""), ("[analysis.static]", "[analysis.modal]\ncount = 1")],
         "3:7: beam `arm` has no mass, which a modal analysis needs",

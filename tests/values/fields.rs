@@ -1,7 +1,9 @@
 //! Forces that depend on the place.
 
 use super::{Written, near};
+use ancf::assembly::Needs;
 use ancf::scene::parse;
+use ancf::system::System;
 use std::f64::consts::TAU;
 
 /// A rigid rod of 2 m and 3 kg in the plane.
@@ -202,6 +204,30 @@ fn no_step_passes_over_a_short_pulse() {
             let found = in_motion(field, held, 1.0, steps);
             let tolerance = if steps.contains("step") { 1e-3 } else { 2e-6 };
             near(found.last("probes.csv", "end.y"), expected, tolerance, &format!("{field}, {steps}"));
+        }
+    }
+}
+
+/// However fast a field varies within a step, its mean 2 (1 − cos ω)/ω over a second and its first moment 2 (ω − sin ω)/ω² are known, with
+/// which steps are judged and corrected.
+#[test]
+fn a_field_that_is_faster_than_steps_has_its_mean_and_first_moment() {
+    for omega in [3.0_f64, 40.0, 400.0] {
+        let field = rod(
+            &format!("value = ['0', 'sin({omega}*t)']"),
+            &format!("{GUIDED}\nanalysis.dynamic.duration = 1"),
+        );
+        let scene = parse("field.toml", &field).expect("a scene");
+        let system = System::build(scene.model(), Needs { inertia: true, motion: true }).expect("a rod");
+        let mut sums = [0; 2].map(|_| vec![0.0; system.coordinates()]);
+        let mut scratch = sums[0].clone();
+        let [mean, moment] = &mut sums;
+        system.add_unseen_loads([0.0, 1.0], &[], system.start(), [mean, moment], &mut scratch);
+        // Forces have the sign of a density, and those of the nodes' y sum up to all.
+        let found = sums.map(|force| -force.iter().skip(1).step_by(4).sum::<f64>());
+        let expected = [2.0 * (1.0 - omega.cos()) / omega, 2.0 * (omega - omega.sin()) / (omega * omega)];
+        for (found, expected) in found.into_iter().zip(expected) {
+            near(found, expected, 1e-10, &format!("ω = {omega}"));
         }
     }
 }

@@ -198,16 +198,23 @@ fn a_tendon_of_given_length_has_the_tension_of_its_arc() {
         }
     }
     // On an arc of radius 1 m, which bends to the left, the way at the offset e is that of 1 − e.
-    let arc = |length: f64| {
-        let text = held("basis.ancf.elements = 60", &format!("offset = 0.1, length = {length}"), STATIC);
+    let arc_with = |offset: &str, length: f64| {
+        let text = held("basis.ancf.elements = 60", &format!("{offset}, length = {length}"), STATIC);
         let line = "start = [0, 0], end = [0.5, 0]";
         text.replace(
             line,
             "arc = { center = [0, 1], radius = 1, from = '-90 deg', to = '-61.3521102435088 deg' }",
         )
     };
+    let arc = |length: f64| arc_with("offset = 0.1", length);
     assert!(parse("arc.toml", &arc(0.45 + 1e-6)).unwrap_err().to_string().contains("would be slack"));
     near(Written::of(&arc(0.45 - 1e-9)).said("/tensions/0/tension"), 0.0, 1e-4, "tension of an arc");
+    // At the offset e = 0.05 + 0.2 s it is that of √(u² + e'²) with u = 1 − e: by the integral of a hyperbola.
+    let integral = |u: f64| 0.5 * (u * u.hypot(0.2) + 0.04 * (u / 0.2).asinh());
+    let way = (integral(0.95) - integral(0.85)) / 0.2;
+    let said = parse("arc.toml", &arc_with("offset.table = { s = [0, 0.5], value = [0.05, 0.15] }", 1.0));
+    let said = said.expect_err("a slack tendon").to_string();
+    assert!(said.contains(&format!("is {way:.9} m")), "{said}, not {way}");
 }
 
 /// If a tendon and the axis do not stretch, ∫(u' − e v'') ds = 0 keeps the direction of the tip: the beam

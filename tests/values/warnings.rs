@@ -396,3 +396,26 @@ fn waves_that_are_shorter_than_cells_are_told() {
     assert_eq!((told.len(), events), (0, 4), "{told:?}");
     assert_eq!(warnings(8, 12.0, "").0.len(), 0);
 }
+
+/// Degrees that are taken for radians make 90/(2 π) turns of a quarter; one turn and less lie on nothing.
+#[test]
+fn an_arc_of_many_turns_is_told() {
+    let arc = |to: &str| {
+        solved(&format!(
+            "beam.arm = {{ arc = {{ center = [0, 0], radius = 1, from = 0, to = {to} }}, axial_stiffness = 1e4, bending_stiffness = 1, \
+             basis.ancf.elements = 40 }}
+             support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}]
+             analysis.static = {{}}\n"
+        ))
+        .run
+        .warnings
+    };
+    for told in ["90", "-90"] {
+        let found = arc(told);
+        let expected = format!("beam `arm` is an arc of {:.2} turns", 90.0 / (2.0 * PI));
+        assert!(found.iter().any(|text| text.starts_with(&expected)), "{told}: {found:?}");
+    }
+    for quiet in ["'90 deg'", "'360 deg'", "'-360 deg'"] {
+        assert!(!arc(quiet).iter().any(|text| text.contains("turns")), "{quiet}");
+    }
+}

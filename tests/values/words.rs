@@ -237,6 +237,12 @@ fn overrides_without_a_place_are_told() {
         (&["effect.moment.x.value=1"], 1, "has no entry `x`", "its entries are 0 to 1"),
         (&["support.1.fix=['x']"], 1, "`support` is a list and has no entry `1`", "its only entry is 0"),
         (&["probe=[]", "probe.0.name=x"], 1, "`probe` is a list and has no entry `0`", "the list is empty"),
+        (
+            &["effect.tendon.0.tension=1"],
+            1,
+            "the scene has no `effect.tendon`, of which this would be number 0",
+            "write `[[effect.tendon]]` into the scene",
+        ),
         (&["beam.leg.start=[0, 0]"], 1, "`beam` has no `leg`", "it has: arm"),
         (
             &["beam.leg={ start = [0, 0], end = [1, 1], axial_stiffness = 1, basis.ancf.elements = 1 }"],

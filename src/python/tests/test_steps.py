@@ -17,6 +17,14 @@ def test_without_a_change_steps_are_the_motion_as_a_whole(pendulum: ancf.Scene) 
     assert [step.time for step in pendulum.steps(0.125)] == [0.125, 0.25, 0.375, 0.5]
 
 
+def test_a_step_records_its_start_and_its_end() -> None:
+    """However long: here 2 s of a rigid bar that falls freely."""
+    table = falling(analysis={"dynamic": {"duration": "4 s", "output_every": "0.1 s", "radau": {"stages": 3, "tolerance": 1e-5}}})
+    table["support"] = []
+    for step in ancf.Scene(table).steps(2.0):
+        assert list(step.result.time) == pytest.approx([step.time - 2.0, step.time])
+
+
 def test_a_change_acts_from_then_on() -> None:
     """A rigid free beam pushed by a force F(t) that is switched: v = ∫F/m, in steps of a constant force."""
     table = falling(

@@ -93,7 +93,7 @@ pub struct PointsTable {
     /// Values, as many as times.
     #[schemars(length(min = 2))]
     pub values: Vec<Quantity<Ratio>>,
-    /// A cubic spline through the points in place of straight lines.
+    /// The natural cubic spline through the points, without curvature at its ends, in place of straight lines.
     #[serde(default)]
     pub smooth: bool,
 }

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::{AlongBeam, AlongVector, LawTable};
 use crate::scene::quantity::{
     Angle, Curvature, DragCoefficient, Force, ForcePerLength, Frequency, Length, Mass, MassPerLength, Moment,
-    Permittivity, Positive, Quantity, Ratio, RotaryInertia, RotaryInertiaPerLength, Stress, Time,
+    Permittivity, Positive, Quantity, Ratio, RotaryInertia, RotaryInertiaPerLength, StiffnessPerLength, Time,
     TorsionalDamping, TranslationalDamping, Velocity, ViscousDamping, Voltage,
 };
 use crate::scene::value::{At, Count, Located, Vector};
@@ -118,7 +118,7 @@ pub struct FoundationTable {
     /// Name of the beam.
     pub beam: Located<String>,
     /// Force per length and displacement along x and y.
-    pub stiffness: Located<AlongVector<Stress>>,
+    pub stiffness: Located<AlongVector<StiffnessPerLength>>,
     /// Arc length from which on it acts; the beam's start when left out.
     pub from: Option<Located<At>>,
     /// Arc length up to which it acts; the beam's end when left out.
@@ -317,7 +317,7 @@ pub struct ContactTable {
     #[serde(rename = "box")]
     pub rectangle: Option<BoxTable>,
     /// Force per length of beam and penetration.
-    pub stiffness: Quantity<Stress, Positive>,
+    pub stiffness: Quantity<StiffnessPerLength, Positive>,
     /// Distance of the beam's surface from its centreline; that of its `section` when left out, and
     /// zero without one.
     pub half_thickness: Option<Quantity<Length, Positive>>,
@@ -376,7 +376,7 @@ pub struct FrictionTable {
     /// Friction force against contact force.
     pub coefficient: Quantity<Ratio, Positive>,
     /// Force per length of beam and elastic slip; that of the contact when left out.
-    pub stiffness: Option<Quantity<Stress, Positive>>,
+    pub stiffness: Option<Quantity<StiffnessPerLength, Positive>>,
     /// Not in use any more: friction sticks, and needs no velocity.
     #[schemars(skip)]
     pub velocity: Option<Located<Quantity<Velocity>>>,

@@ -46,7 +46,7 @@ pub enum StartError {
         plain(*.s, 6)
     )]
     #[diagnostic(help(
-        "an impact on what is rigid has no bound: let the motion before end where this point, or its direction, is at rest (an `[[event]]` with `stop`), or \
+        "an impact on what is rigid has no bound: let the motion before end where this point, or its direction, is at rest (an `[[analysis.dynamic.event]]` with `stop`), or \
          catch it by a stiff `effect.spring` or `effect.torsion_spring` with `damping`"
     ))]
     Caught {
