@@ -73,7 +73,7 @@ struct RunArguments {
     /// there on, what is new in statics grows with the load factor, and vibrations may be about it
     #[arg(long, value_name = "STATE")]
     from: Option<PathBuf>,
-    /// Save the state of a motion every so often by the clock, such as "10 min" or 600 (seconds), into `state.json`
+    /// Save the state of a motion every so often by the clock, such as "10 min", into `state.json`
     /// of the directory, from which `--from` goes on should the run be killed
     #[arg(long, value_name = "TIME", value_parser = duration)]
     checkpoint: Option<Duration>,
@@ -151,8 +151,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     failures.iter().map(Failure::exit_status).max().unwrap_or(0)
 }
 
-/// A positive time, in seconds where it has no unit.
+/// A positive time with its unit.
 fn duration(text: &str) -> Result<Duration, String> {
+    if text.trim().parse::<f64>().is_ok() {
+        return Err(format!("it has no unit: write \"{0} s\" or \"{0} min\"", text.trim()));
+    }
     Duration::try_from_secs_f64(scene::seconds(text)?).map_err(|error| error.to_string())
 }
 

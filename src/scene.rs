@@ -251,13 +251,11 @@ fn whole(source: impl Read, longest: u64) -> std::io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= longest).then_some(bytes))
 }
 
-/// Reads a positive time such as `"60 s"`, `"2 min"` or `"60"` \[s\].
+/// Reads a positive time such as `"60 s"` or `"2 min"` \[s\].
 ///
 /// # Errors
 /// What was found and what is legal, in one sentence.
 pub fn seconds(text: &str) -> Result<f64, String> {
-    let of_seconds = text.trim().parse::<f64>().is_ok().then(|| format!("{} s", text.trim()));
-    let text = of_seconds.as_deref().unwrap_or(text);
     quantity::Quantity::<quantity::Time, quantity::Positive>::parse(text).map(|time| time.si)
 }
 

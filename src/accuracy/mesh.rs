@@ -566,6 +566,9 @@ mod tests {
         let even = of(&[0.0, 2.0, 4.0, 6.0, 8.0]);
         assert!(!even.hardly_differs_from(&even.halved()));
         assert!(even.hardly_differs_from(&of(&[0.0, 1.0, 2.0, 4.0, 5.0, 6.0, 7.0, 8.0])));
+        // Half as long as the longest one is long.
+        let all_but_one = of(&[0.0, 1.0, 3.0, 5.0, 6.5, 8.0]);
+        assert!(of(&[0.0, 1.0, 5.0, 8.0]).hardly_differs_from(&all_but_one));
         let short = of(&[0.0, 0.125, 4.0, 8.0]);
         assert!(!short.hardly_differs_from(&of(&[0.0, 0.125, 2.0, 4.0, 6.0, 8.0])));
     }

@@ -724,6 +724,33 @@ mod tests {
         assert!((improved(101) * LOOSER - 1.0).abs() < 1e-1, "{}", improved(101));
     }
 
+    /// Meshes of too few cells have fewer critical loads of a short pressed part than are asked for, and cannot be compared: finer ones can.
+    #[test]
+    fn meshes_that_cannot_be_compared_are_made_finer() {
+        let scene = scene(
+            "effect.force = [{ beam = 'arm', at = 0.04, value = [-1, 0] }]\nanalysis.buckling = { count = 6, accuracy = 0.3 }",
+        );
+        let found = Search::new(runner(&scene, 0.3)).run().expect("critical loads");
+        let error = found.results.run().error.as_ref().expect("an estimate");
+        assert!(error.met && error.runs.len() > 4, "{:?}", error.reason);
+    }
+
+    /// A force along a beam within its span makes the strain jump there, which is nothing to a beam beside it.
+    #[test]
+    fn jumps_of_the_strain_are_errors_of_their_own_beam() {
+        let scene = scene(
+            "beam.other = { start = [0, 0], end = [0, 4], axial_stiffness = 1e4, bending_stiffness = 1, basis.ancf.elements = 8 }
+             joint = [{ type = 'weld', first = { beam = 'arm', at = 'start' }, second = { beam = 'other', at = 'start' } }]
+             effect.force = [{ beam = 'arm', at = 2, value = [100, 0] }, { beam = 'other', at = 'end', value = [0.01, 0] }]
+             probe = [{ name = 'tip', beam = 'other', at = 'end' }]
+             analysis.static = {}",
+        );
+        let found = Search::new(runner(&scene, 1e-2)).run().expect("an equilibrium");
+        let error = found.results.run().error.as_ref().expect("an estimate");
+        let last = error.probes[0].samples.last().expect("an equilibrium");
+        assert!(last.x < 1e-3, "{}", last.x);
+    }
+
     #[test]
     fn a_mesh_that_the_scene_names_cannot_be_refined() {
         let named = scene("beam.arm.basis.ancf.elements = 4\nanalysis.static = {}");

@@ -37,7 +37,7 @@ pub struct CostArguments {
     /// relative error of frequencies or load factors
     #[arg(long, value_name = "ERROR", default_value_t = Options::default().target)]
     target: f64,
-    /// Time for everything, in seconds or with its unit; the reference takes up to half of it
+    /// Time for everything, with its unit; the reference takes up to half of it
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = super::duration)]
     budget: Duration,
     /// Directory of the results [default: out/<stem of the scene file>]

@@ -52,14 +52,14 @@ fn a_saved_state_that_does_not_fit_is_refused() {
     let state = fs::read_to_string(folder.path().join("out/state.json")).expect("a state");
     let (digit, other) = if state.contains("0.2") { ("0.2", "0.3") } else { ("0.1", "0.4") };
     fs::write(folder.path().join("altered.json"), state.replacen(digit, other, 1)).expect("a folder");
-    fs::write(folder.path().join("old.json"), state.replacen("\"format\":7", "\"format\":2", 1))
+    fs::write(folder.path().join("old.json"), state.replacen("\"format\":8", "\"format\":2", 1))
         .expect("a folder");
     let from = ["--from", "out/state.json"];
     for (arguments, part) in [
         (&["scene.toml", "--from", "none.json"][..], "none.json"),
         (&["scene.toml", "--from", "broken.json"], "not a saved state"),
         (&["scene.toml", "--from", "altered.json"], "not as it was written"),
-        (&["scene.toml", "--from", "old.json"], "has format 2, and this version reads format 7"),
+        (&["scene.toml", "--from", "old.json"], "has format 2, and this version reads format 8"),
         (
             &[&["scene.toml", "--set", "beam.arm.second_moment=\"0.131 cm^4\""], &from[..]].concat(),
             "beam `arm` had another section",

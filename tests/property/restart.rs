@@ -284,6 +284,12 @@ fn velocities_that_part_joints_are_refused_as_such() {
                 turns.clone(),
                 Some(("parts a joint: near s = 1.000000 m of beam `a`", "2.000e0 m/s")),
             ),
+            (
+                "hinge",
+                soft,
+                velocity("a", "rotation = 0.01"),
+                Some(("parts a joint: near s = 1.000000 m of beam `a`", "1.000e-2 m/s")),
+            ),
             ("hinge", soft, format!("{turns}{follows}"), None),
             (
                 "weld",

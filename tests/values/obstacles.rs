@@ -252,3 +252,20 @@ fn a_motion_that_begins_within_an_obstacle_says_so() {
         "effect.spring = [{ beam = 'rod', at = 0.2, anchor = [0.2, -0.1], stiffness = 2e3, length = 0 }]";
     assert!(warned(-0.1, spring));
 }
+
+/// A bar that hangs on its hinge creeps down to a thin plate, and rests on it: with R = m g/2 at its tip, which the plate presses where it is
+/// deeper in it than ½ k δ²/tan θ = R.
+#[test]
+fn a_bar_comes_to_rest_on_a_thin_plate() {
+    let found = Written::of(
+        "beam.bar = { start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1e3, mass_per_length = 1, basis.ancf.elements = 4 }
+        support = [{ beam = 'bar', at = 'start', fix = ['x', 'y'] }]
+        effect.gravity.acceleration = [0, -9.81]
+        effect.contact = [{ beam = 'bar', stiffness = 1e6, box = { center = [0.9, -0.3], size = [0.4, 0.01] } }]
+        probe = [{ name = 'tip', beam = 'bar', at = 'end' }]
+        analysis.static = {}\n",
+    );
+    let slope = (0.2967_f64).asin().tan();
+    let depth = (2.0 * 0.5 * 9.81 * slope / 1e6).sqrt();
+    near(found.last("probes.csv", "tip.y"), -0.295 - depth, 2e-5, "tip.y");
+}
