@@ -88,11 +88,7 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Res
         _ => words.concat(),
     };
     let beam = &built[index];
-    Err(Fault::new(
-        beam.name.span(),
-        format!("beam `{}` is under-supported: it is free for {words}", beam.name.get()),
-    )
-    .help(match resisting {
+    let help = match resisting {
         Resisting::Weight => {
             "an equilibrium needs every rigid motion held: add a `[[support]]`, such as \
              `fix = [\"x\", \"y\", \"angle\"]` at the start, or a `[[joint]]`"
@@ -101,7 +97,17 @@ pub(super) fn check_rigid_motions(model: &Model, built: &[Built], resisting: Res
             "a path by arc length and a buckling analysis need every rigid motion held without loads: add a `[[support]]`, such as \
              `fix = [\"x\", \"y\", \"angle\"]` at the start, or a `[[joint]]`, or let a `[[stage]]` before it load what loads hold"
         }
-    }))
+    };
+    let obstacles = if model.has_contact() {
+        "; an obstacle does not count, for it holds what presses it only: a soft `[[effect.spring]]` holds a beam that lies on one"
+    } else {
+        ""
+    };
+    Err(Fault::new(
+        beam.name.span(),
+        format!("beam `{}` is under-supported: it is free for {words}", beam.name.get()),
+    )
+    .help(format!("{help}{obstacles}")))
 }
 
 /// Per beam, whether weight, and loads of fixed direction beside it, give it a direction, because

@@ -197,6 +197,11 @@ fn rigid_motions_are_told_in_words() {
         (hinged.clone() + "effect.foundation = [{ beam = 'a', stiffness = [0, 1] }]\n", None),
         (hinged.replace("bending_stiffness = 1, ", ""), None),
         (
+            hinged.clone()
+                + "effect.contact = [{ beam = 'a', stiffness = 1e4, half_plane = { point = [0, 1], normal = [0, 1] } }]\n",
+            Some("an obstacle does not count, for it holds what presses it only"),
+        ),
+        (
             (level.clone() + &held(&at("'start'", "['x']"))).replace("bending_stiffness = 1, ", ""),
             Some("it is free for translation along y\n"),
         ),
