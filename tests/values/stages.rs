@@ -501,7 +501,10 @@ fn stages_share_their_nodes_and_name_themselves_in_errors() {
     );
     let run = solve_stages(scene(&timed).stages(), Options::default());
     let failure = run.failure.expect("a law without time").to_string();
-    assert!(failure.starts_with("stage `three`: a load follows a law of time"), "{failure}");
+    assert!(
+        failure.starts_with("stage `three`: a load (`distributed_force`) follows a law of time"),
+        "{failure}"
+    );
     assert_eq!(run.results.len(), 2);
 }
 
