@@ -57,11 +57,12 @@ pub(super) fn paths_to(key: &str) -> Vec<Vec<String>> {
     found
 }
 
-/// The keys that the table at `path`, without the numbers of lists, must have.
+/// The keys that the table at `path`, without the numbers of lists, must have; of several choices those of the first.
 pub(super) fn required_at(path: &[String]) -> Vec<String> {
     let mut keys = Vec::new();
     visit(&schema(), &mut |at, schema| {
-        if is_like(at, path)
+        if keys.is_empty()
+            && is_like(at, path)
             && let Some(Value::Array(required)) = schema.get("required")
         {
             keys.extend(required.iter().filter_map(|key| key.as_str().map(str::to_owned)));
@@ -129,6 +130,7 @@ mod tests {
         let path = |text: &str| text.split('.').map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(required_at(&path("effect.gravity")), ["acceleration"]);
         assert_eq!(required_at(&path("effect.contact.friction")), ["coefficient"]);
+        assert_eq!(required_at(&path("beam.arm")), ["start", "end"]);
         assert!(is_like(&path("beam.NAME.start"), &path("beam.arm.start")));
         assert!(!is_like(&path("beam.NAME.start"), &path("beam.arm.end")));
     }
