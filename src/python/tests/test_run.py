@@ -164,6 +164,11 @@ def test_a_run_without_states_has_the_same_numbers_and_warnings(cantilever: ancf
         modal.shape(t=1.0)
 
 
+def test_a_page_moves_only_where_its_pictures_are_kept(cantilever: ancf.Scene) -> None:
+    moving = ['"frames":' in cantilever.run(shapes=False, pictures=kept).page() for kept in (True, False)]
+    assert moving == [True, False]
+
+
 def test_an_accuracy_chooses_what_is_open() -> None:
     table = arm(analysis={"static": {"accuracy": 1e-5}})
     del table["beam"]["arm"]["basis"]
