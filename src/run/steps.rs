@@ -103,6 +103,7 @@ mod tests {
             told.contains("a law of 1.500e3 Hz or more, which goes through 1.50 cycles in a step"),
             "{told}"
         );
+        assert!(told.contains("use steps below 6.7e-5 s"), "{told}");
     }
 
     /// The same of laws by expression, alone and in a product, and of fields that change with time.

@@ -115,9 +115,14 @@ fn a_stage_that_fails_is_told_in_its_own_results() {
     };
     // What the third has reached is written, too.
     assert_eq!(["one", "two", "three"].map(told), [false, false, true], "{}", stderr(&output));
-    let all = fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
-    let all: serde_json::Value = serde_json::from_str(&all).unwrap();
-    assert_eq!(all["complete"], false);
+    let is_complete = |out: &str| {
+        let all = fs::read_to_string(folder.path().join(out).join("summary.json")).unwrap();
+        serde_json::from_str::<serde_json::Value>(&all).unwrap()["complete"].clone()
+    };
+    assert_eq!(is_complete("out"), false);
+    let less = "effect.force.1.value=[0, -1]";
+    let output = ancf(folder.path(), &["run", "scene.toml", "-o", "less", "--set", less]);
+    assert_eq!((status(&output), is_complete("less")), (0, true.into()), "{}", stderr(&output));
 }
 
 #[test]

@@ -9,8 +9,7 @@ use ancf_mutants::Failure;
 use ancf_mutants::build::{self, Built, Program};
 use ancf_mutants::copy::{Workshop, sources, spliced};
 use ancf_mutants::find::{Mutant, find};
-use ancf_mutants::reasons::without_place;
-use ancf_mutants::record::{Again, Record, head};
+use ancf_mutants::record::{Again, Record, head, text_at};
 use ancf_mutants::sample::parts;
 use ancf_mutants::trial;
 use clap::Parser;
@@ -71,11 +70,23 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
     let path = Record::path(&root);
     let recorded = Record::read(&path)?;
     let before = recorded.as_ref().map_or_else(Vec::new, |record| record.survivor.clone());
-    let survivors: BTreeSet<String> = before.iter().map(|s| without_place(&s.mutant)).collect();
+    let survivors: Vec<Vec<usize>> = match &recorded {
+        Some(record) if arguments.again => {
+            let files: BTreeSet<&str> = all.iter().map(|mutant| mutant.file.as_str()).collect();
+            let mut then: Vec<Mutant> = Vec::new();
+            for file in files.into_iter().filter(|file| before.iter().any(|s| s.mutant.starts_with(file))) {
+                then.extend(
+                    text_at(&root, &record.commit, file).map_or(Ok(Vec::new()), |text| find(file, &text))?,
+                );
+            }
+            record.survivors_among(&then, &all)
+        }
+        _ => Vec::new(),
+    };
     // Folder by folder: how many are wanted of which candidates.
     let wanted: Vec<(usize, Vec<usize>)> = if arguments.again {
-        let meant = |&i: &usize| survivors.contains(&without_place(&all[i].name()));
-        vec![(all.len(), (0..all.len()).filter(meant).collect())]
+        let each_once: BTreeSet<usize> = survivors.iter().flatten().copied().collect();
+        vec![(all.len(), each_once.into_iter().collect())]
     } else {
         let candidates = |wanted: usize| (SPARE * wanted as f64).ceil() as usize + 2;
         let only = &arguments.only;
@@ -110,7 +121,7 @@ fn run(arguments: &Arguments) -> Result<bool, Failure> {
     let date = jiff::Timestamp::now().strftime("%F").to_string();
     let mut record = match recorded {
         Some(mut record) if arguments.again => {
-            record.try_again(&all, &outcomes, Again { date, commit });
+            record.try_again(&survivors, &outcomes, Again { date, commit });
             record.store(&path, &before)?;
             record.tell();
             return Ok(record.total.missed == record.equivalent(None));

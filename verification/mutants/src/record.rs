@@ -141,32 +141,43 @@ impl Record {
         Self { date, commit, command, again: None, total, folder, survivor }
     }
 
-    /// Counts survivors that were tried again and are no longer missed as caught or timed out. One
-    /// that was not tried, because its line is gone or does not compile, stays a survivor.
-    pub fn try_again(&mut self, all: &[Mutant], outcomes: &BTreeMap<usize, Outcome>, again: Again) {
-        let mut caught: Vec<(String, bool)> = Vec::new();
-        let mut missed: BTreeSet<String> = BTreeSet::new();
-        for (&number, outcome) in outcomes {
-            let text = without_place(&all[number].name());
-            match outcome {
-                Outcome::Caught(_) => caught.push((text, false)),
-                Outcome::TimedOut(_) => caught.push((text, true)),
-                Outcome::Missed(_) => drop(missed.insert(text)),
+    /// Which of `all` mutants each survivor is: of those that read alike the one of the same rank, where there were as many in the sources of
+    /// the record, `then`; else it may be any of them.
+    pub fn survivors_among(&self, then: &[Mutant], all: &[Mutant]) -> Vec<Vec<usize>> {
+        let meant = |survivor: &Survivor| {
+            let text = without_place(&survivor.mutant);
+            let reads_alike = |mutant: &&Mutant| without_place(&mutant.name()) == text;
+            let now: Vec<usize> = (0..all.len()).filter(|i| reads_alike(&&all[*i])).collect();
+            let then: Vec<String> = then.iter().filter(reads_alike).map(Mutant::name).collect();
+            let rank = then.iter().position(|name| *name == survivor.mutant);
+            match rank {
+                Some(rank) if then.len() == now.len() => vec![now[rank]],
+                _ => now,
             }
-        }
-        // Several mutants of one text may lie in a function: all must be caught.
-        let found = |s: &Survivor| {
-            let text = without_place(&s.mutant);
-            caught.iter().find(|(of, _)| *of == text && !missed.contains(of)).map(|(_, late)| *late)
         };
-        for (survivor, late) in self.survivor.iter().filter_map(|s| Some((s, found(s)?))) {
+        self.survivor.iter().map(meant).collect()
+    }
+
+    /// Counts survivors that were tried again, as the mutants that they are `among` all, and are no longer missed as caught or timed out. One
+    /// that was not tried, because its line is gone or does not compile, stays a survivor, and so does one that may be another that is missed.
+    pub fn try_again(&mut self, among: &[Vec<usize>], outcomes: &BTreeMap<usize, Outcome>, again: Again) {
+        let is_late = |numbers: &Vec<usize>| {
+            let outcomes: Vec<&Outcome> = numbers.iter().filter_map(|number| outcomes.get(number)).collect();
+            let missed = outcomes.iter().any(|outcome| matches!(outcome, Outcome::Missed(_)));
+            let late = outcomes.iter().all(|outcome| matches!(outcome, Outcome::TimedOut(_)));
+            (!outcomes.is_empty() && !missed).then_some(late)
+        };
+        let found: Vec<Option<bool>> = among.iter().map(is_late).collect();
+        for (survivor, late) in self.survivor.iter().zip(&found) {
+            let Some(late) = *late else { continue };
             let folder = self.folder.get_mut(&folder_of(&survivor.mutant));
             for counts in folder.into_iter().chain([&mut self.total]) {
                 counts.missed = counts.missed.saturating_sub(1);
                 *(if late { &mut counts.timed_out } else { &mut counts.caught }) += 1;
             }
         }
-        self.survivor.retain(|s| found(s).is_none());
+        let mut found = found.iter();
+        self.survivor.retain(|_| found.next().is_none_or(Option::is_none));
         self.again = Some(again);
     }
 
@@ -198,6 +209,13 @@ impl Record {
             "{viable} viable of {exist} mutants tried, {missed} missed, {equivalent} of them equivalent"
         );
     }
+}
+
+/// The text of a file at a commit; `None` where git does not have it.
+pub fn text_at(root: &Path, commit: &str, file: &str) -> Option<String> {
+    let of = format!("{commit}:{file}");
+    let output = Command::new("git").arg("-C").arg(root).args(["show", &of]).output().ok()?;
+    output.status.success().then(|| String::from_utf8(output.stdout).ok()).flatten()
 }
 
 /// The commit of the sources, and whether they are as committed.
@@ -262,12 +280,19 @@ mod tests {
         // Caught by a test that was written since.
         let mut later = record.clone();
         let again = Again { date: "2026-01-03".to_owned(), commit: "abc".to_owned() };
-        later.try_again(&all, &BTreeMap::from([(3, Outcome::Caught("t".to_owned()))]), again.clone());
+        let among = record.survivors_among(&[], &all);
+        assert_eq!(among, [[3, 4]], "either of the two that read alike");
+        later.try_again(&among, &BTreeMap::from([(3, Outcome::Caught("t".to_owned()))]), again.clone());
         assert_eq!((later.total, later.survivor.len()), (Counts { caught: 2, missed: 0, ..total }, 0));
         assert_eq!((later.folder["src/basis"].caught, later.again.as_ref()), (2, Some(&again)));
         later = record.clone();
-        later.try_again(&all, &BTreeMap::from([(3, Outcome::Missed(2))]), again);
+        let one_of_both = [(3, Outcome::Missed(2)), (4, Outcome::Caught("t".to_owned()))];
+        later.try_again(&among, &BTreeMap::from(one_of_both), again);
         assert_eq!((later.total, &later.survivor), (record.total, &record.survivor));
+        // The first of two in its file then, and now.
+        let then = [mutant("src/basis.rs", 1), mutant("src/basis.rs", 5)];
+        assert_eq!(record.survivors_among(&then, &all), [[3]]);
+        assert_eq!(record.survivors_among(&then[..1], &all), [[3, 4]]);
         // The file reads back as it was written.
         let text = toml::to_string(&record).expect("serialisable");
         assert_eq!(toml::from_str::<Record>(&text).expect("the same format"), record);
