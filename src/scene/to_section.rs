@@ -197,8 +197,8 @@ fn linear_section(label: &str, table: &BeamTable, length: f64) -> Result<Section
     })
 }
 
-/// Refuses a beam without elastic modulus that has a second moment and no other bending stiffness, or the shape or the area of a section and no
-/// stiffness at all. It would be a string, one that keeps its length at that: more likely the modulus was forgotten.
+/// Refuses a beam without elastic modulus that has a second moment or the shape of a section and no other bending stiffness, or an area and no
+/// stiffness at all. It would be a string, perhaps one that keeps its length: more likely the modulus was forgotten.
 fn modulus_is_not_missed(label: &str, table: &BeamTable) -> Result<(), Fault> {
     let stretches = table.axial_stiffness.is_some() || table.axial_law.is_some();
     let bends = table.bending_stiffness.is_some() || table.bending_law.is_some();
@@ -207,7 +207,7 @@ fn modulus_is_not_missed(label: &str, table: &BeamTable) -> Result<(), Fault> {
     let area = table.area.as_ref().map(|given| ("an `area`", given.span()));
     let missed = match (bends, stretches) {
         (true, _) => None,
-        (false, true) => second_moment,
+        (false, true) => second_moment.or(shape),
         (false, false) => second_moment.or(shape).or(area),
     };
     let Some((what, span)) = missed else { return Ok(()) };

@@ -70,6 +70,11 @@ const CASES: &[Case] = &[
         "7:1: beam `arm` has a `section` but no `youngs_modulus`: is it to stretch or bend?",
     ),
     (
+        "section that only stretches",
+        &[("bending_stiffness = 2.0\nmass_per_length = 0.5", "density = 4.0\nsection.circle.diameter = 0.1")],
+        "8:1: beam `arm` has a `section` but no `youngs_modulus`: is it to bend?",
+    ),
+    (
         "second moment without modulus",
         &[("bending_stiffness = 2.0", "second_moment = 2.0")],
         "7:17: beam `arm` has a `second_moment` but no `youngs_modulus`: is it to bend?",
