@@ -41,7 +41,9 @@ mod judgement;
 mod mesh;
 mod missing;
 mod model_error;
+mod prospect;
 mod round;
+mod runner;
 mod saturation;
 mod search;
 pub(crate) mod setting;
@@ -52,7 +54,7 @@ use crate::model::{About, Accuracy, Analysis, Model, Open, Place, Stage};
 use crate::results::{LazyText, Results};
 use crate::run::{Options, RunError, StagesRun, solve_stages, solve_stages_by};
 use crate::scene::Scene;
-use round::{Fineness, Runner};
+use runner::{Fineness, Runner};
 use search::Search;
 use stages::Starts;
 

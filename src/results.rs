@@ -3,6 +3,7 @@
 
 mod estimate;
 mod modes;
+pub(crate) mod places;
 mod shape;
 mod trajectory;
 

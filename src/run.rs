@@ -1,5 +1,6 @@
 //! One model, one analysis: build, solve, and look at the states.
 
+mod balance;
 mod coils;
 mod electrodes;
 mod error;
@@ -26,6 +27,7 @@ mod surfaces;
 mod tendons;
 mod velocities;
 
+pub(crate) use balance::OffBalance;
 pub use error::RunError;
 pub(crate) use laws::stiffness_jumps;
 pub use shapes::shapes_at;

@@ -8,7 +8,6 @@ mod laid_out;
 mod layers;
 mod modes;
 mod negligible;
-mod places;
 mod section_forces;
 mod states;
 mod stations;
@@ -238,6 +237,20 @@ fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
 }
 
+/// The larger error of each quantity; of two of which one is not a number the other.
+pub(super) fn each_larger(a: &ProbeSample, b: &ProbeSample) -> ProbeSample {
+    let of = |a: Option<f64>, b: Option<f64>| b.map(|b| a.map_or(b, |a| a.max(b)));
+    ProbeSample {
+        x: a.x.max(b.x),
+        y: a.y.max(b.y),
+        angle: a.angle.max(b.angle),
+        curvature: a.curvature.max(b.curvature),
+        strain: a.strain.max(b.strain),
+        vx: of(a.vx, b.vx),
+        vy: of(a.vy, b.vy),
+    }
+}
+
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -334,7 +347,7 @@ pub(super) mod tests {
         assert!(common(&[0.0, 100.0], &[3e-7, 100.0]).is_ok_and(|pairs| pairs == [(1, 1)]));
         assert!(common(&[0.0, 1.0], &[0.5]).is_err() && common(&[1.0], &[]).is_err());
         let (still, motion) = (scene("static = {}"), scene("dynamic = { duration = 1 }"));
-        let path = super::super::round::tests::scene("analysis.static.arc_length.max_points = 9");
+        let path = super::super::runner::tests::scene("analysis.static.arc_length.max_points = 9");
         let of = |scene: &Scene, run: &[f64], reference: &[f64]| pairs(scene.analysis(), run, reference);
         assert_eq!(of(&still, &[0.0, 0.5, 1.0], &[0.0, 0.7, 1.0]), Ok(vec![(0, 0), (2, 2)]));
         assert_eq!(of(&path, &[0.0, 0.5, 1.0], &[0.0, 1.0]), Ok(vec![(2, 1)]));

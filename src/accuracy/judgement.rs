@@ -3,7 +3,8 @@
 use super::difference::Difference;
 use super::mesh::{self, CellErrors, Mesh};
 use super::missing::Missing;
-use super::round::{LOOSER, Round, Runner};
+use super::round::Round;
+use super::runner::{LOOSER, Runner};
 use crate::model::{Accuracy, Analysis, Integrator, StepControl};
 use crate::results::Errors;
 
@@ -267,7 +268,8 @@ pub(super) fn excess(errors: Errors, wanted: Accuracy) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::round::tests::{round, run, runner, scene};
+    use crate::accuracy::round::tests::{round, run};
+    use crate::accuracy::runner::tests::{runner, scene};
     use crate::results::AnalysisKind;
 
     #[test]

@@ -243,7 +243,8 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::round::tests::{run, scene};
+    use crate::accuracy::round::tests::run;
+    use crate::accuracy::runner::tests::scene;
     use crate::results::Energy;
 
     /// A motion of ten steps within a second with these kinetic energies, all that there are.

@@ -4,7 +4,9 @@ use super::difference::{Difference, events, is_path, jumps};
 use super::judgement::{CAUTION, Estimate, Fall, Judged, LEAST_CONTRACTION, Seen, excess};
 use super::mesh::{self, CellErrors, Mesh};
 use super::missing::Missing;
-use super::round::{FINEST, Fineness, LOOSER, Outcome, Purpose, Round, Runner, short};
+use super::prospect::{POWER, Paid, beyond_price, outgrown};
+use super::round::{Outcome, Round};
+use super::runner::{FINEST, Fineness, LOOSER, Purpose, Runner, short};
 use super::{Accurate, model_error, statement};
 use crate::model::{Accuracy, Analysis, StepControl};
 use crate::results::{ErrorEstimate, Errors};
@@ -25,8 +27,6 @@ const STALLS: usize = 2;
 const STALLS_OF_CONTACT: usize = 4;
 /// Rounds after which errors that grow with time are no more those of too coarse a mesh.
 const GROWN: usize = 3;
-/// Errors of positions, in beam lengths, beyond which two motions have nothing in common.
-const LOST: f64 = 0.2;
 /// Part of the wanted error that the next round aims at.
 const AIM: f64 = 0.5;
 /// Most times as many cells in the next round …
@@ -38,8 +38,6 @@ const CAREFUL_LEAP: f64 = 3.0;
 const LEAP_OF_TOLERANCE: f64 = 200.0;
 /// Differences that fall by this factor at least tell all errors well enough together.
 const FELL_WELL: f64 = 4.0;
-/// Errors of motions go with this power of the tolerance.
-const POWER: f64 = 0.75;
 /// Errors of equilibria with friction, of which load steps go with the root of the tolerance.
 const POWER_OF_LOAD_STEPS: f64 = 0.5;
 /// The tolerance goes with this power of steps.
@@ -102,6 +100,7 @@ impl<'a, 'o> Search<'a, 'o> {
     pub fn run(mut self) -> Result<Accurate, RunError> {
         let mut before: Option<Seen> = None;
         let mut best: Option<Judged> = None;
+        let mut paid: Vec<Paid> = Vec::new();
         let (mut rounds, mut stalls, mut failures, mut mute) = (0, 0, 0, 0);
         let touches = matches!(self.runner.analysis, Analysis::Static(_)) && self.runner.model.has_contact();
         let most_stalls = if touches { STALLS_OF_CONTACT } else { STALLS };
@@ -188,6 +187,7 @@ impl<'a, 'o> Search<'a, 'o> {
             // No error is smaller than what finer meshes do not remove.
             let errors = judged.errors();
             judged.excess = self.runner.wanted.map_or(0.0, |wanted| excess(errors, wanted));
+            paid.push(Paid::of(&judged));
             if let Some((run, stated)) = self.runner.runs.get_mut(judged.round.run).zip(judged.stated()) {
                 run.error = Some(stated.errors.result);
             }
@@ -210,8 +210,10 @@ impl<'a, 'o> Search<'a, 'o> {
                 let jump = || self.runner.largest_jump(&judged.round.jumps);
                 let jump = if errors.result <= wanted.result { jump() } else { None };
                 Some(self.runner.kink_at().or(jump).unwrap_or_else(|| SEVERAL.to_owned()))
-            } else if let Some(growth) = self.outgrown(&judged, wanted).filter(|_| rounds >= GROWN) {
+            } else if let Some(growth) = outgrown(&self.runner, &judged, wanted).filter(|_| rounds >= GROWN) {
                 Some(growth)
+            } else if let Some(price) = beyond_price(&paid) {
+                Some(price)
             } else if rounds >= ROUNDS {
                 Some(format!("{ROUNDS} rounds of finer meshes and smaller steps were not enough"))
             } else if stalls > 0 && same_steps && self.runner.open.integrator {
@@ -325,31 +327,6 @@ impl<'a, 'o> Search<'a, 'o> {
         let [told, finer, coarse] = [&round.results, &between, coarse].map(|run| &run.states().events[..]);
         of_steps.events = events(told, [coarse, finer]);
         between.run().complete.then_some([of_mesh, of_steps])
-    }
-
-    /// Why no steps are small enough for a motion whose errors grow with time: as fast as they grew
-    /// from what is wanted to what tells nothing any more, they would have to begin below all
-    /// tolerances.
-    fn outgrown(&self, judged: &Judged, wanted: Accuracy) -> Option<String> {
-        let Analysis::Dynamic(_) = self.runner.analysis else { return None };
-        let records = &judged.estimate.as_ref()?.whole.records;
-        let times = &judged.round.results.states().parameter;
-        let passes = |level: f64| {
-            let first = records.iter().position(|error| error * judged.caution > level)?;
-            times.get(first).copied()
-        };
-        let (good, lost, end) = (passes(wanted.result)?, passes(LOST)?, *times.last()?);
-        if lost <= good || wanted.result >= LOST {
-            return None;
-        }
-        // Errors grow like exp(λ t).
-        let rate = (LOST / wanted.result).ln() / (lost - good);
-        let needed = rate * (end - good);
-        let left = (self.runner.tolerance / FINEST).ln();
-        (POWER * left < needed).then(|| {
-            let twice = std::f64::consts::LN_2 / rate;
-            format!("errors of this motion double every {twice:.2} s, so that no steps are small enough for all of it")
-        })
     }
 
     /// Finer meshes where cells err and smaller steps where steps err, so that the next round is
@@ -546,20 +523,21 @@ fn more_cells(errors: Errors, wanted: Accuracy, contraction: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::accuracy::difference::Difference;
-    use crate::accuracy::round::tests::{round, run, runner, scene};
+    use crate::accuracy::round::tests::{round, run};
+    use crate::accuracy::runner::tests::{runner, scene};
     use crate::results::{AnalysisKind, Trajectory};
 
-    const STILL: &str = "analysis.static = {}";
-    const MOTION: &str = "analysis.dynamic = { duration = 1 }";
+    pub const STILL: &str = "analysis.static = {}";
+    pub const MOTION: &str = "analysis.dynamic = { duration = 1 }";
 
     /// What a search knows of a round with these differences; errors are a (contraction − 1)-th.
-    fn judged(search: &Search<'_, '_>, difference: Difference, contractions: [f64; 2]) -> Judged {
+    pub fn judged(runner: &Runner<'_, '_>, difference: Difference, contractions: [f64; 2]) -> Judged {
         let results = run(AnalysisKind::Static, 1, 0);
         Judged {
-            round: round(&search.runner, results, None),
+            round: round(runner, results, None),
             estimate: Some(estimate(difference, contractions)),
             caution: 1.0,
             likely: 1.0,
@@ -579,28 +557,6 @@ mod tests {
         }
     }
 
-    /// Errors that were e^{λt}: from 1e-4 to 0.2 within a second, by λ = 7.6/s. A tolerance of 3e-4 may fall
-    /// to 1e-13, which makes errors e^{16.4} times smaller, enough for 2.15 s from where they passed 1e-4.
-    #[test]
-    fn motions_whose_errors_grow_too_fast_are_given_up() {
-        let (motion, still) = (scene(MOTION), scene(STILL));
-        let said = |scene: &crate::Scene, wanted: f64, times: [f64; 4], records: [f64; 4]| {
-            let search = Search::new(runner(scene, wanted));
-            let difference = Difference { records: records.into(), ..Difference::default() };
-            let mut judged = judged(&search, difference, [3.0, 4.0]);
-            judged.round.results.states_mut().parameter = times.into();
-            search.outgrown(&judged, Accuracy::new(wanted))
-        };
-        let growing = [1e-5, 2.2e-4, 0.5, 0.9];
-        let found = said(&motion, 1e-4, [0.0, 1.0, 2.0, 3.2], growing).expect("too fast");
-        assert!(found.contains("double every 0.09 s"), "{found}");
-        assert_eq!(said(&motion, 1e-4, [0.0, 1.0, 2.0, 3.1], growing), None);
-        assert_eq!(said(&still, 1e-4, [0.0, 1.0, 2.0, 3.2], growing), None);
-        assert_eq!(said(&motion, 1e-4, [0.0, 1.0, 2.0, 3.2], [1e-5, 0.5, 0.5, 0.5]), None, "at once");
-        assert_eq!(said(&motion, 1e-4, [0.0, 1.0, 2.0, 3.2], [1e-5, 2.2e-4, 0.1, 0.3]), None);
-        assert_eq!(said(&motion, 0.3, [0.0, 1.0, 2.0, 30.0], [0.0, 0.5, 0.7, 0.9]), None);
-    }
-
     /// Half of the wanted error of 1e-4 is aimed at, with cells that all err alike.
     #[test]
     fn as_many_cells_are_taken_as_errors_need() {
@@ -610,7 +566,7 @@ mod tests {
             search.most = most;
             let even = CellErrors { squares: vec![1.0; 4], order: 2.0 };
             let judged = judged(
-                &search,
+                &search.runner,
                 Difference { errors, cells: vec![even], ..Difference::default() },
                 contractions,
             );
@@ -669,7 +625,7 @@ mod tests {
             let cells = vec![CellErrors { squares: vec![1.0; before.0], order: 2.0 }];
             let errors = Errors { result: mesh, ..Errors::default() };
             let mut judged = judged(
-                &search,
+                &search.runner,
                 Difference { errors, cells, ..Difference::default() },
                 [if falls { 2.0 } else { 1.5 }; 2],
             );
@@ -713,7 +669,7 @@ mod tests {
             let cells = vec![CellErrors { squares: vec![1.0; before.0], order: 2.0 }];
             let errors = Errors { result: 1e-2, ..Errors::default() };
             let mut judged =
-                judged(&search, Difference { errors, cells, ..Difference::default() }, [15.0, 4.0]);
+                judged(&search.runner, Difference { errors, cells, ..Difference::default() }, [15.0, 4.0]);
             judged.round.results = run(AnalysisKind::Dynamic, steps, 0);
             judged.round.coarse = Some(run(AnalysisKind::Dynamic, 100, 0));
             search.improve(&judged, Accuracy::new(1e-4), false).expect("what can be finer");
@@ -755,7 +711,7 @@ mod tests {
     fn a_mesh_that_the_scene_names_cannot_be_refined() {
         let named = scene("beam.arm.basis.ancf.elements = 4\nanalysis.static = {}");
         let mut search = Search::new(runner(&named, 1e-4));
-        let mut judged = judged(&search, Difference::default(), [15.0, 4.0]);
+        let mut judged = judged(&search.runner, Difference::default(), [15.0, 4.0]);
         judged.round.cells = 0;
         assert_eq!(search.improve(&judged, Accuracy::new(1e-4), false), Err(NAMED.to_owned()));
         assert!(!search.refine_everywhere());
@@ -794,7 +750,7 @@ mod tests {
             let eigenvalues = vec![6.0];
             let difference =
                 Difference { errors, records: records.into(), eigenvalues, ..Difference::default() };
-            let mut judged = judged(&search, difference, [4.0, 4.0]);
+            let mut judged = judged(&search.runner, difference, [4.0, 4.0]);
             let parameter = vec![0.0, 0.5, 1.0];
             judged.round.results = Trajectory { parameter, ..Trajectory::default() }.into();
             *search.finished(judged, None).results.run_mut().error.take().expect("an estimate")

@@ -1,5 +1,6 @@
 //! Errors of single records, places and events, as they are stated.
 
+use super::difference::each_larger;
 use crate::model::{Model, Place, ProbeQuantity};
 use crate::results::{ContactImpulse, Event, EventErrors, ProbeErrors, ProbeSample, Trajectory};
 
@@ -23,21 +24,8 @@ pub(super) fn of_probe(mut probe: ProbeErrors) -> ProbeErrors {
             if probe.samples[i].x.is_nan() {
                 return probe.samples[i];
             }
-            probe.samples[i.saturating_sub(reach).min(of_last)..=last].iter().fold(
-                ProbeSample::default(),
-                |most, sample| {
-                    let of = |a: Option<f64>, b: Option<f64>| b.map(|b| a.map_or(b, |a| a.max(b)));
-                    ProbeSample {
-                        x: most.x.max(sample.x),
-                        y: most.y.max(sample.y),
-                        angle: most.angle.max(sample.angle),
-                        curvature: most.curvature.max(sample.curvature),
-                        strain: most.strain.max(sample.strain),
-                        vx: of(most.vx, sample.vx),
-                        vy: of(most.vy, sample.vy),
-                    }
-                },
-            )
+            let within = &probe.samples[i.saturating_sub(reach).min(of_last)..=last];
+            within.iter().fold(ProbeSample::default(), |most, sample| each_larger(&most, sample))
         })
         .collect();
     probe.samples = around;

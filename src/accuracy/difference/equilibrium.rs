@@ -1,23 +1,14 @@
 //! By how much the curvatures and strains of an equilibrium are off those of the forces that balance it.
 //!
-//! The axial force N and the bending moment M of the last state balance what acts on a beam before the cut, and are as accurate as
-//! its positions. They belong to a strain and a curvature
-//!
-//! ```text
-//! ε = (EI N − EB M)/(EA EI − EB²),   κ = κ₀ + (EA M − EB N)/(EA EI − EB²)
-//! ```
-//!
-//! with the curvature κ₀ of the curve along which the beam is laid out. Those of the shape functions, which are derivatives, differ from
-//! these by their own error, and moments, which forces make with positions as levers, by what those are off; of taut beams this is all there
-//! is. Where errors fall as the method promises, two meshes differ by three times as much. At the edge of a contact, beside a stiff
-//! spring and in a layer they may agree by chance, and differ at least by what the finer one is off.
+//! Where errors fall as the method promises, two meshes differ by three times as much. At the edge of a contact, beside a stiff
+//! spring and in a layer they may agree by chance, and differ at least by what the finer one is [off balance](OffBalance).
 
-use super::places::{interpolated, is_twice, same_place};
 use super::{Difference, larger};
 use crate::accuracy::mesh::{CellErrors, Mesh};
-use crate::centreline::Curve;
-use crate::model::{Beam, Model, StrainMeasure};
+use crate::model::{Beam, Model};
+use crate::results::places::interpolated;
 use crate::results::{AnalysisKind, Shape, Trajectory};
+use crate::run::OffBalance;
 
 /// Makes what curvatures and strains of the last record of a `run` differ by from those of a coarser one at least what they are off the
 /// forces that balance it, where it ends with an equilibrium.
@@ -71,48 +62,19 @@ struct Off {
 
 impl Off {
     /// What is certain of them where positions are `known` to be off by so much \[m\], and moments by as much times the largest force. `None`
-    /// where forces do not tell strains: of elastic laws, and where the forces are not known.
+    /// where forces do not tell strains.
     fn of(beam: &Beam, shape: &Shape, known: f64) -> Option<Self> {
-        let section = &beam.section;
-        let curve = Curve::new(&beam.centreline).ok()?;
-        let given =
-            [&shape.axial_force, &shape.bending_moment].iter().all(|along| along.len() == shape.s.len());
-        if !section.is_linear() || !given {
-            return None;
-        }
+        let OffBalance { strain, curvature } = OffBalance::of(beam, shape)?;
         let forces = shape.axial_force.iter().chain(&shape.shear_force);
         let unsure = known * forces.fold(0.0_f64, |most, force| most.max(force.abs()));
-        let jumps: Vec<f64> = curve.kinks().into_iter().chain(section.breaks()).collect();
-        let mut off = Self { strain: Vec::new(), curvature: Vec::new() };
-        for (k, &s) in shape.s.iter().enumerate() {
-            // Where something jumps the strain is a compromise, which others tell.
-            let jumps =
-                is_twice(&shape.s, s) || jumps.iter().any(|at| (at - s).abs() <= same_place(&shape.s));
-            let inside = 0.5 * curve.length();
-            let [axial, bending, coupling] =
-                [&section.axial_stiffness, &section.bending_stiffness, &section.coupling]
-                    .map(|along| along.as_ref().map(|along| along.at(s, inside)));
-            // N is the derivative of the energy by |r'|.
-            let by_stretch = match beam.strain {
-                StrainMeasure::Green => beam.strain.stretch(shape.strain[k]),
-                StrainMeasure::Engineering => 1.0,
-            };
-            let [n, m] = [shape.axial_force[k] / by_stretch, shape.bending_moment[k]];
-            let [strain, bend] = match (axial, bending, coupling) {
-                _ if jumps => [None; 2],
-                (Some(ea), Some(ei), Some(eb)) => {
-                    let both = ea * ei - eb * eb;
-                    [Some((ei * n - eb * m) / both), Some((ea * m - eb * n) / both)]
-                }
-                (ea, ei, _) => [ea.map(|ea| n / ea), ei.map(|ei| m / ei)],
-            };
-            let size =
-                |seen: f64, expected: Option<f64>| expected.map_or(0.0, |expected| (seen - expected).abs());
-            off.strain.push(size(shape.strain[k], strain));
-            let bent = size(shape.curvature[k], bend.map(|bend| curve.curvature(s) + bend));
-            off.curvature.push((bent - bending.map_or(0.0, |ei| unsure / ei)).max(0.0));
-        }
-        Some(off)
+        let inside = 0.5 * shape.s.last()?;
+        let bending = |s: f64| beam.section.bending_stiffness.as_ref().map(|along| along.at(s, inside));
+        let certain =
+            |(s, off): (&f64, f64)| (off.abs() - bending(*s).map_or(0.0, |ei| unsure / ei)).max(0.0);
+        Some(Self {
+            strain: strain.into_iter().map(f64::abs).collect(),
+            curvature: shape.s.iter().zip(curvature).map(certain).collect(),
+        })
     }
 }
 
@@ -121,7 +83,7 @@ mod tests {
     use super::super::Scales;
     use super::super::tests::{meshes, scene};
     use super::*;
-    use crate::model::Along;
+    use crate::model::{Along, StrainMeasure};
     use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Run};
 
     /// The arm of 2 m, EA = 1 N and EI = 1 N m² with cells of 0.5 m and 1.5 m, in an equilibrium of N = 0.25 N everywhere

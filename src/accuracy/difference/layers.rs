@@ -10,12 +10,12 @@
 //! until its moment is EI κ. Long cells bend by far less. At a clamp positions err by a part of the cell's length times θ₀ − θ, which coarser
 //! meshes do tell; a moment of a spring that is off by ΔM moves the string by ΔM/N, which they do not.
 
-use super::places::interpolated;
 use super::{Difference, larger};
 use crate::accuracy::mesh::turning;
 use crate::centreline::Curve;
 use crate::effect::{Moment, TorsionSpring};
 use crate::model::{FixedRotation, Joint, Model, Place};
+use crate::results::places::interpolated;
 use crate::results::{AnalysisKind, Shape, Trajectory};
 use std::any::Any;
 use std::f64::consts::TAU;

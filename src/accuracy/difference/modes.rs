@@ -1,10 +1,10 @@
 //! By how much vibration and buckling modes differ.
 
 use super::kinks::kink;
-use super::places::interpolated;
 use super::{Difference, larger};
 use crate::accuracy::mesh::{CellErrors, Mesh};
 use crate::model::Model;
+use crate::results::places::interpolated;
 use crate::results::{Errors, ModeShape, Results};
 
 /// The part of the largest error that a value has at least, in proportion to the squares of both.

@@ -2,8 +2,8 @@
 
 use super::larger;
 use super::negligible::{Negligible, tells};
-use super::places::{interpolated, is_before};
 use crate::results::Shape;
+use crate::results::places::{interpolated, is_before};
 
 /// The largest difference of axial and shear forces, relative to the largest of both and of M/L,
 /// and of bending moments, relative to the largest of these; `None` where no force is larger than what round-off makes

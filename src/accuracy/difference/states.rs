@@ -3,13 +3,13 @@
 use super::equilibrium::at_least_off_balance;
 use super::events::events;
 use super::negligible::{Negligible, tells};
-use super::places::{interpolated, is_before, is_twice, same_place};
 use super::section_forces::section_forces;
 use super::stations::parts;
 use super::strain_jumps::{OF_CURVATURE, strain_jump};
-use super::{Difference, Scales, larger, pairs};
+use super::{Difference, Scales, each_larger, larger, pairs};
 use crate::accuracy::mesh::{CellErrors, Mesh};
 use crate::model::{Analysis, Beam, Discretization, Model, Place, Section};
+use crate::results::places::{interpolated, is_before, is_twice, same_place};
 use crate::results::{BeamErrors, Errors, ProbeErrors, ProbeSample, Shape, Trajectory};
 use std::f64::consts::TAU;
 
@@ -165,7 +165,7 @@ pub fn states<'t>(
     } else {
         fill(&mut difference.records, &known, |a, b| larger(*a, *b));
         for probe in &mut difference.probes {
-            fill(&mut probe.samples, &known, |a, b| if a.x >= b.x { *a } else { *b });
+            fill(&mut probe.samples, &known, each_larger);
         }
     }
     let negligible: Vec<Negligible> = (model.beams.iter().zip(meshes).zip(&fine.last))

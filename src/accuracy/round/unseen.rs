@@ -1,16 +1,15 @@
 //! Errors that coarser meshes do not show: of parts with one cell, of shape functions that are others there, and of what acts in a
 //! point, where errors of the first order are beside others that fall faster, or where all meshes err alike.
 
-use super::{Purpose, Round, Runner, coarser, short};
+use super::Round;
 use crate::accuracy::difference::{
     self, Difference, Layer, StrainJump, fixed_gradients, is_path, jumps_of_modes,
 };
 use crate::accuracy::mesh::Mesh;
+use crate::accuracy::runner::{Purpose, Runner, coarser, short};
 use crate::accuracy::saturation::is_uneven;
 use crate::accuracy::setting::{Family, Setting, Solver};
-use crate::basis::Basis;
-use crate::centreline::Curve;
-use crate::model::{Accuracy, Analysis, Discretization, Integrator, Model, Place, StepControl};
+use crate::model::{Accuracy, Analysis, Discretization, Integrator, Place, StepControl};
 use crate::numeric::plain;
 use crate::results::{Event, Results};
 use crate::run::{shapes_at, stiffness_jumps as jumps_of_laws};
@@ -34,13 +33,11 @@ const MOST_ITERATIONS: usize = 10;
 
 /// Most records of which it is known where their forces pass corners of laws.
 const RECORDS: usize = 64;
-/// What acts this near to a node, in cells, acts there: the error is the cube of it.
-const AT_NODE: f64 = 0.02;
 
 impl Runner<'_, '_> {
     /// Whether coarser meshes tell nothing of the errors of a part of a beam: the scene gives it one cell, or shape functions
     /// whose errors the number of cells does not decide, or which are others there.
-    pub(super) fn is_unseen(&self, beam: usize) -> bool {
+    pub fn is_unseen(&self, beam: usize) -> bool {
         let one = self.named[beam].as_ref().is_some_and(|mesh| mesh.coarsening().is_none());
         one || self.saturated[beam] || self.dissimilar[beam]
     }
@@ -213,7 +210,7 @@ impl Runner<'_, '_> {
     }
 
     /// Whether laws may have corners where a state, or several, rest.
-    pub(super) fn has_corners(&self) -> bool {
+    pub fn has_corners(&self) -> bool {
         let linear = self.model.beams.iter().all(|beam| beam.section.is_linear());
         !linear && !matches!(self.analysis, Analysis::Dynamic(_))
     }
@@ -348,28 +345,4 @@ impl Runner<'_, '_> {
             )
         })
     }
-}
-
-/// Whether something acts in a point, begins or ends within a cell that the scene gives a beam. `named` has nodes there, and those that the scene
-/// names.
-pub(super) fn has_points(model: &Model, beam: usize, named: &Mesh) -> bool {
-    let Ok(length) = Curve::new(&model.beams[beam].centreline).map(|curve| curve.length()) else {
-        return false;
-    };
-    let discretization = &model.beams[beam].discretization;
-    let breaks = model.breaks(beam);
-    let own: Vec<f64> = match discretization {
-        Discretization::Ancf { .. } => {
-            Basis::broken(discretization, length, &breaks).map(|basis| basis.nodes().to_vec())
-        }
-        _ => Basis::new(discretization, length)
-            .map(|basis| basis.nodes().iter().copied().chain(breaks).collect()),
-    }
-    .unwrap_or_default();
-    if own.is_empty() {
-        return false;
-    }
-    let near = AT_NODE * length / own.len() as f64;
-    let within = |s: &f64| own.iter().all(|node| (node - s).abs() > near);
-    named.nodes.iter().any(within) || model.edges(beam).iter().any(within)
 }

@@ -7,6 +7,7 @@ use crate::model::Model;
 use crate::numeric::plain;
 use crate::restart::SavedState;
 use crate::results::{AnalysisKind, Energy, ProbeSeries, Shape, Trajectory};
+use crate::run::balance::too_few_cells;
 use crate::run::laws::Reach;
 use crate::run::locking::unheld;
 use crate::run::tendons::Tendons;
@@ -65,6 +66,10 @@ impl Sampler<'_> {
             let actions = self.system.static_actions(*load, x, variables);
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
             trajectory.run.warnings.extend(imbalance::out_of_balance(self.system, *load, x, variables));
+        }
+        // Where errors are estimated these tell more.
+        if self.stations.is_empty() {
+            trajectory.run.warnings.extend(too_few_cells(self.model, self.system, &trajectory.last));
         }
         let states = [solution.states.first(), solution.states.last()].into_iter().flatten();
         let states: Vec<(&[f64], f64)> = states.map(|(_, x)| (self.coordinates_of(x), 0.0)).collect();
