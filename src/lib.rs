@@ -58,7 +58,7 @@
 //! | `solve` | Newton, path following, buckling, vibrations, motion | `lanes`, `threads`, `linear`, [`assembly`], `numeric`, [`model`], [`system`] |
 //! | [`restart`] | a saved state from which another analysis can go on | [`assembly`], [`model`], [`system`], `solve` |
 //! | [`results`] | the results of an analysis | [`system`], `solve`, [`restart`] |
-//! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, `numeric`, [`basis`], [`law`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
+//! | [`run`](mod@run) | one model, one analysis; or several one after the other | `linear`, `numeric`, [`centreline`], [`basis`], [`law`], [`assembly`], [`effect`], [`model`], [`system`], `solve`, [`restart`], [`results`] |
 //! | [`output`] | files, plots, the report page | [`model`], [`restart`], [`results`] |
 //! | [`scene`] | text → checked description: units, rules, messages with line and column, JSON schema | [`centreline`], [`assembly`], [`effect`], [`model`] |
 //! | [`accuracy`] | everything that a scene leaves open chosen for an accuracy, and the errors of results | `numeric`, [`centreline`], [`basis`], [`effect`], [`model`], [`results`], [`restart`], [`run`](mod@run), [`scene`] |

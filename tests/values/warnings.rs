@@ -286,7 +286,7 @@ fn what_an_analysis_leaves_out_is_told_in_one_line() {
 fn what_moves_and_pulls_takes_no_part_in_vibrations_about_the_stress_free_state() {
     let told = |support: &str, more: &str, analysis: &str| {
         let text = format!(
-            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 4 }}
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e4, bending_stiffness = 1, mass_per_length = 1, basis.ancf.elements = 32 }}
              support = [{{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }}, {{ beam = 'arm', at = 'end', fix = ['x', 'y'] {support} }}]
              analysis.modal = {{ count = 1{analysis} }}\n{more}"
         );

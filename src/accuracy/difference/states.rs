@@ -466,7 +466,9 @@ mod tests {
             vx: Some(2.5),
             vy: Some(2.5),
         };
-        assert_eq!((found.probes.len(), tip[0].x, tip[1], tip[2]), (1, 0.0, last, last));
+        // Between two records each quantity errs by the larger of both.
+        let between = ProbeSample { angle: 0.1 * (TAU - 5.0), ..last };
+        assert_eq!((found.probes.len(), tip[0].x, tip[1], tip[2]), (1, 0.0, between, last));
         // Velocities and angles of a record near to one that errs may be those of a wave that passes zero; the angle errs by a
         // tenth of the largest one on the beam.
         assert_eq!((tip[0].angle, tip[0].strain, tip[0].vx), (0.1 * (TAU - 5.0), 0.0, Some(2.5)));

@@ -69,7 +69,8 @@ impl Sampler<'_> {
         }
         // Where errors are estimated these tell more.
         if self.stations.is_empty() {
-            trajectory.run.warnings.extend(too_few_cells(self.model, self.system, &trajectory.last));
+            let told = too_few_cells(self.model, self.system, &trajectory.last, None);
+            trajectory.run.warnings.extend(told);
         }
         let states = [solution.states.first(), solution.states.last()].into_iter().flatten();
         let states: Vec<(&[f64], f64)> = states.map(|(_, x)| (self.coordinates_of(x), 0.0)).collect();

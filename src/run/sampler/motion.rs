@@ -5,6 +5,7 @@ use super::{History, LOOKED_AT, Sampler, is_among};
 use crate::model::{Dynamic, EventCondition, EventKind, StepControl};
 use crate::numeric::plain;
 use crate::results::{AnalysisKind, Energy, Event, Trajectory};
+use crate::run::balance::too_few_cells;
 use crate::run::laws::Reach;
 use crate::run::locking::unheld;
 use crate::run::tendons::Tendons;
@@ -94,6 +95,12 @@ impl Sampler<'_> {
                 Some(balance) => self.loaded(&state.q, &self.system.actions(balance.view())),
                 None => self.shape(&state.q),
             };
+        }
+        // Where errors are estimated these tell more.
+        if self.stations.is_empty() {
+            let kinetic = trajectory.energy.last().map_or(0.0, |energy| energy.kinetic);
+            let told = too_few_cells(self.model, self.system, &trajectory.last, Some(kinetic));
+            trajectory.run.warnings.extend(told);
         }
         for &dynamics::ProbeEvent { watch, time, value, rates } in &solution.events {
             let EventCondition { probe, quantity, when, .. } = &settings.events[watch];
