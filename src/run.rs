@@ -26,6 +26,7 @@ mod strings;
 mod surfaces;
 mod tendons;
 mod velocities;
+mod waves;
 
 pub(crate) use balance::OffBalance;
 pub use error::RunError;

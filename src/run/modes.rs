@@ -3,7 +3,7 @@
 use super::laws::{at_corners, divided, within_cells};
 use super::sampler::Sampler;
 use super::start::Start;
-use super::{Options, RunError, Solve, Stopwatch, Watch, memory, timed};
+use super::{Options, RunError, Solve, Stopwatch, Watch, memory, timed, waves};
 use crate::assembly::{InternalVariables, Part, Side, nodes};
 use crate::effect::Tendon;
 use crate::model::{About, Analysis, Buckling, Displacement, Modal, Model, Static};
@@ -16,6 +16,7 @@ use crate::solve::eigen::EigenError;
 use crate::solve::{buckling, modal, statics};
 use crate::system::System;
 use std::any::Any;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Accuracy of the equilibrium: as far as round-off lets Newton's method come, because stress, and
@@ -195,7 +196,14 @@ impl Sampler<'_> {
         let shapes = self.mode_shapes(&equilibrium.last, q, &shapes);
         let vibrations = modes.frequencies.iter().zip(&modes.round_off).zip(shapes);
         let vibration = |((&frequency, &round_off), shape)| Vibration { frequency, round_off, shape };
-        let modes = vibrations.map(vibration).collect();
+        let modes: Vec<Vibration> = vibrations.map(vibration).collect();
+        // With φᵀ M φ = 1 twice the elastic energy is ω².
+        if !self.is_for_an_estimate() {
+            let of = |mode: &'_ Vibration| Some((TAU * mode.frequency).powi(2));
+            let shapes = modes.iter().map(|mode| (&mode.shape[..], of(mode)));
+            let told = waves::too_short((self.model, self.system), "frequency", 0.5, shapes);
+            equilibrium.run.warnings.extend(told);
+        }
         Ok(Vibrations { equilibrium, modes })
     }
 
@@ -237,7 +245,12 @@ impl Sampler<'_> {
         let shapes = self.mode_shapes(&unloaded.last, q, &shapes);
         let loads = modes.load_factors.iter().zip(&modes.round_off).zip(shapes);
         let mode = |((&load_factor, &round_off), shape)| BucklingMode { load_factor, round_off, shape };
-        let modes = loads.map(mode).collect();
+        let modes: Vec<BucklingMode> = loads.map(mode).collect();
+        if !self.is_for_an_estimate() {
+            let shapes = modes.iter().map(|mode| (&mode.shape[..], None));
+            let told = waves::too_short((self.model, self.system), "critical load", 1.0, shapes);
+            unloaded.run.warnings.extend(told);
+        }
         CriticalLoads { unloaded, modes }
     }
 

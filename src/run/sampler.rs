@@ -360,6 +360,11 @@ impl<'a> Sampler<'a> {
         run.warnings.extend(missed);
     }
 
+    /// Whether the run is made for an estimate, which tells more of errors than single runs can.
+    pub(super) fn is_for_an_estimate(&self) -> bool {
+        !self.stations.is_empty()
+    }
+
     /// The points whose directions are watched: those of the probes.
     pub(super) fn directions(&self) -> Vec<View> {
         self.probes.iter().map(|probe| probe.view.clone()).collect()

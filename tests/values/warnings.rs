@@ -277,7 +277,8 @@ fn what_an_analysis_leaves_out_is_told_in_one_line() {
         assert_eq!(solved(&format!("{arm}{velocity}{analysis}")).run.warnings, [two]);
     }
     let motion = "analysis.dynamic = { duration = 0.01, output_every = 0.01 }\n";
-    assert_eq!(solved(&format!("{arm}{velocity}{motion}")).run.warnings, Vec::<String>::new());
+    let found = solved(&format!("{arm}{velocity}{motion}")).run.warnings;
+    assert!(!found.iter().any(|told| told.contains("no part in")), "{found:?}");
 }
 
 /// What stretches or bends a beam without being a load takes no part in vibrations about its stress-free

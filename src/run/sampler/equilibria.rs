@@ -67,8 +67,7 @@ impl Sampler<'_> {
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
             trajectory.run.warnings.extend(imbalance::out_of_balance(self.system, *load, x, variables));
         }
-        // Where errors are estimated these tell more.
-        if self.stations.is_empty() {
+        if !self.is_for_an_estimate() {
             let told = too_few_cells(self.model, self.system, &trajectory.last, None);
             trajectory.run.warnings.extend(told);
         }

@@ -96,8 +96,7 @@ impl Sampler<'_> {
                 None => self.shape(&state.q),
             };
         }
-        // Where errors are estimated these tell more.
-        if self.stations.is_empty() {
+        if !self.is_for_an_estimate() {
             let kinetic = trajectory.energy.last().map_or(0.0, |energy| energy.kinetic);
             let told = too_few_cells(self.model, self.system, &trajectory.last, Some(kinetic));
             trajectory.run.warnings.extend(told);
