@@ -130,6 +130,9 @@ pub struct Options<'o> {
     /// Whether the end is kept as a state from which another run can start, [`Trajectory::saved`]: it
     /// is by default.
     pub saved: bool,
+    /// Whether the results are compared with those of another mesh, which tells more of what cells miss than the warnings that
+    /// one run can give, and are given by default.
+    pub compared: bool,
 }
 
 /// How much of the states of a run is kept.
@@ -141,6 +144,8 @@ struct Detail<'o> {
     shape_points: usize,
     /// Per beam, arc lengths \[m\] at which every record is kept.
     stations: &'o [Vec<f64>],
+    /// Whether results are compared with others.
+    compared: bool,
 }
 
 impl Default for Options<'_> {
@@ -155,6 +160,7 @@ impl Default for Options<'_> {
             shape_points: SHAPE_POINTS,
             stations: &[],
             saved: true,
+            compared: false,
         }
     }
 }
@@ -162,15 +168,46 @@ impl Default for Options<'_> {
 impl<'o> Options<'o> {
     /// The same options, without an observer.
     fn copied(&self) -> Self {
-        let Self { start, observer: _, checkpoints, cache, states, frames, shape_points, stations, saved } =
-            *self;
-        Self { start, observer: None, checkpoints, cache, states, frames, shape_points, stations, saved }
+        let Self {
+            start,
+            observer: _,
+            checkpoints,
+            cache,
+            states,
+            frames,
+            shape_points,
+            stations,
+            saved,
+            compared,
+        } = *self;
+        Self {
+            start,
+            observer: None,
+            checkpoints,
+            cache,
+            states,
+            frames,
+            shape_points,
+            stations,
+            saved,
+            compared,
+        }
     }
 
     /// The same options for one run of several.
     pub(crate) fn again(&mut self) -> Options<'_> {
-        let Self { start, observer, checkpoints, cache, states, frames, shape_points, stations, saved } =
-            self;
+        let Self {
+            start,
+            observer,
+            checkpoints,
+            cache,
+            states,
+            frames,
+            shape_points,
+            stations,
+            saved,
+            compared,
+        } = self;
         Options {
             start: *start,
             observer: observer.as_mut().map(|observer| &mut **observer as _),
@@ -181,11 +218,13 @@ impl<'o> Options<'o> {
             shape_points: *shape_points,
             stations,
             saved: *saved,
+            compared: *compared,
         }
     }
 
     fn detail(&self) -> Detail<'o> {
-        Detail { frames: self.frames, shape_points: self.shape_points, stations: self.stations }
+        let Self { frames, shape_points, stations, compared, .. } = *self;
+        Detail { frames, shape_points, stations, compared }
     }
 
     /// Refuses a saved state for an analysis that starts from the stress-free one.

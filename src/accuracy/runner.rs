@@ -347,6 +347,7 @@ impl<'a, 'o> Runner<'a, 'o> {
             frames: if all { options.frames } else { 0 },
             shape_points,
             stations,
+            compared: true,
             saved: options.saved && (all || other.is_some()),
             ..options
         };

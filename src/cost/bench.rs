@@ -71,7 +71,8 @@ impl Runner<'_> {
             }
             if miss.is_some() { Control::Stop } else { Control::Continue }
         };
-        let options = run::Options { observer: Some(observer), frames: 0, ..run::Options::default() };
+        let options =
+            run::Options { observer: Some(observer), frames: 0, compared: true, ..run::Options::default() };
         let outcome = model.solve_with(&analysis, options);
         match (outcome, miss) {
             (Ok(results), _) if results.run().complete => Ok(results),

@@ -198,7 +198,7 @@ impl Sampler<'_> {
         let vibration = |((&frequency, &round_off), shape)| Vibration { frequency, round_off, shape };
         let modes: Vec<Vibration> = vibrations.map(vibration).collect();
         // With φᵀ M φ = 1 twice the elastic energy is ω².
-        if !self.is_for_an_estimate() {
+        if !self.is_compared() {
             let of = |mode: &'_ Vibration| Some((TAU * mode.frequency).powi(2));
             let shapes = modes.iter().map(|mode| (&mode.shape[..], of(mode)));
             let told = waves::too_short((self.model, self.system), "frequency", 0.5, shapes);
@@ -246,7 +246,7 @@ impl Sampler<'_> {
         let loads = modes.load_factors.iter().zip(&modes.round_off).zip(shapes);
         let mode = |((&load_factor, &round_off), shape)| BucklingMode { load_factor, round_off, shape };
         let modes: Vec<BucklingMode> = loads.map(mode).collect();
-        if !self.is_for_an_estimate() {
+        if !self.is_compared() {
             let shapes = modes.iter().map(|mode| (&mode.shape[..], None));
             let told = waves::too_short((self.model, self.system), "critical load", 1.0, shapes);
             unloaded.run.warnings.extend(told);

@@ -35,6 +35,8 @@ pub(super) struct Sampler<'a> {
     loose: Loose,
     /// How many frames are kept.
     frames: usize,
+    /// Whether the results are compared with those of another mesh.
+    compared: bool,
     /// Directions at the probes in the state from which statics starts, with full turns included;
     /// empty or not finite where they are not known.
     pub(super) angles: Vec<f64>,
@@ -78,7 +80,7 @@ impl<'a> Sampler<'a> {
     pub(super) fn new(
         model: &'a Model,
         system: &'a System,
-        Detail { frames, shape_points, stations }: Detail<'_>,
+        Detail { frames, shape_points, stations, compared }: Detail<'_>,
     ) -> Result<Self, RunError> {
         let view = |beam: usize, s: &[f64]| {
             let part = &system.beams()[beam];
@@ -106,7 +108,18 @@ impl<'a> Sampler<'a> {
             .collect::<Result<_, BuildError>>()?;
         let locking = Locking::new(model, system)?;
         let loose = Loose::new(model, system)?;
-        Ok(Self { model, system, shapes, stations, probes, locking, loose, frames, angles: Vec::new() })
+        Ok(Self {
+            model,
+            system,
+            shapes,
+            stations,
+            probes,
+            locking,
+            loose,
+            frames,
+            compared,
+            angles: Vec::new(),
+        })
     }
 
     /// The probe at which a path is to end, as (view, axis, value).
@@ -360,9 +373,9 @@ impl<'a> Sampler<'a> {
         run.warnings.extend(missed);
     }
 
-    /// Whether the run is made for an estimate, which tells more of errors than single runs can.
-    pub(super) fn is_for_an_estimate(&self) -> bool {
-        !self.stations.is_empty()
+    /// Whether the results are compared with those of another mesh, so that single runs need not tell what cells miss.
+    pub(super) fn is_compared(&self) -> bool {
+        self.compared
     }
 
     /// The points whose directions are watched: those of the probes.

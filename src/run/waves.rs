@@ -7,17 +7,20 @@
 //! k⁴/720 ∫ EI κ² h⁴ ds
 //! ```
 //!
-//! and by this part of all elastic energy a critical load is too large, and a frequency by half of it. Meshfree shape functions are
-//! good for waves of two cells and more.
+//! and by this part of all elastic energy a critical load is too large, and a frequency by half of it. Meshfree shape functions follow
+//! waves to 1 % that are longer than 1.7 cells, and none below that.
 
 use crate::model::{Discretization, Model};
 use crate::numeric::plain;
 use crate::results::ModeShape;
 use crate::system::System;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Part of itself by which a frequency or a critical load may be off before a warning says so.
 const TOLERATED: f64 = 0.02;
+
+/// Waves of so many cells are followed by meshfree shape functions.
+const MESHFREE: f64 = 1.7;
 
 /// The waves of a beam in a mode.
 struct Waves {
@@ -66,7 +69,7 @@ impl Waves {
             missed: number.powi(4) * fourth / 720.0,
         };
         let meshfree = matches!(model.beams[beam].discretization, Discretization::Rpim { .. });
-        let resolved = meshfree && waves.number * waves.cell < PI;
+        let resolved = meshfree && MESHFREE * waves.number * waves.cell < TAU;
         waves.missed.is_finite().then_some(if resolved { Self { missed: 0.0, ..waves } } else { waves })
     }
 }

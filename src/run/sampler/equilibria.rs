@@ -67,7 +67,7 @@ impl Sampler<'_> {
             trajectory.last = self.loaded(self.coordinates_of(x), &actions);
             trajectory.run.warnings.extend(imbalance::out_of_balance(self.system, *load, x, variables));
         }
-        if !self.is_for_an_estimate() {
+        if !self.is_compared() {
             let told = too_few_cells(self.model, self.system, &trajectory.last, None);
             trajectory.run.warnings.extend(told);
         }

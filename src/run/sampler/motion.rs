@@ -96,7 +96,7 @@ impl Sampler<'_> {
                 None => self.shape(&state.q),
             };
         }
-        if !self.is_for_an_estimate() {
+        if !self.is_compared() {
             let kinetic = trajectory.energy.last().map_or(0.0, |energy| energy.kinetic);
             let told = too_few_cells(self.model, self.system, &trajectory.last, Some(kinetic));
             trajectory.run.warnings.extend(told);
