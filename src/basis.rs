@@ -248,6 +248,12 @@ impl Basis {
         })
     }
 
+    /// The cell between neighbouring nodes that contains `s` \[m\]: of two that meet there the later one, beyond an end the one beside it.
+    pub fn cell_at(&self, s: f64) -> usize {
+        let after = self.nodes.partition_point(|&node| node <= s);
+        after.saturating_sub(1).min(self.nodes.len().saturating_sub(2))
+    }
+
     /// Rows of the wanted derivative orders (0 to 2) at the points of `rule` in every cell between
     /// neighbouring nodes.
     ///
@@ -415,7 +421,7 @@ impl Basis {
             Some(node) if node > last => (last, 1.0),
             Some(node) => (node, 0.0),
             None => {
-                let cell = self.nodes.partition_point(|&node| node <= s).saturating_sub(1).min(last);
+                let cell = self.cell_at(s);
                 (cell, ((s - self.nodes[cell]) / self.spacing(cell)).clamp(0.0, 1.0))
             }
         })
@@ -444,7 +450,7 @@ impl Basis {
     }
 
     /// Distance from node `cell` to the next \[m\]; infinite beyond the last.
-    fn spacing(&self, cell: usize) -> f64 {
+    pub fn spacing(&self, cell: usize) -> f64 {
         match self.nodes.get(cell..cell + 2) {
             Some(ends) => ends[1] - ends[0],
             None => f64::INFINITY,

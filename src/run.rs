@@ -168,30 +168,7 @@ impl Default for Options<'_> {
 impl<'o> Options<'o> {
     /// The same options, without an observer.
     fn copied(&self) -> Self {
-        let Self {
-            start,
-            observer: _,
-            checkpoints,
-            cache,
-            states,
-            frames,
-            shape_points,
-            stations,
-            saved,
-            compared,
-        } = *self;
-        Self {
-            start,
-            observer: None,
-            checkpoints,
-            cache,
-            states,
-            frames,
-            shape_points,
-            stations,
-            saved,
-            compared,
-        }
+        Self { observer: None, ..*self }
     }
 
     /// The same options for one run of several.

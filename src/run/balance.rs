@@ -12,6 +12,7 @@
 //! is. The energy of the difference is that by which a beam is too stiff (W. Prager and J. L. Synge, Quarterly of Applied Mathematics 5,
 //! 1947), so that one run tells whether its cells are too few.
 
+use crate::basis::Basis;
 use crate::centreline::Curve;
 use crate::effect::BeamDamping;
 use crate::model::{Beam, Model, StrainMeasure};
@@ -92,8 +93,8 @@ struct Energies {
 }
 
 impl Energies {
-    /// Those of a beam with cells up to a length `cell` \[m\]; `None` where they are not known.
-    fn of(beam: &Beam, shape: &Shape, cell: f64) -> Option<Self> {
+    /// `None` where they are not known.
+    fn of(beam: &Beam, basis: &Basis, shape: &Shape) -> Option<Self> {
         let bending = beam.section.bending_stiffness.as_ref()?;
         let curve = Curve::new(&beam.centreline).ok()?;
         let off = OffBalance::of(beam, shape)?;
@@ -105,6 +106,7 @@ impl Energies {
             let [ei, ea] = [Some(bending), beam.section.axial_stiffness.as_ref()]
                 .map(|along| along.map_or(0.0, |along| along.at(s, inside)));
             let mut off = off.curvature[k];
+            let cell = basis.spacing(basis.cell_at(s));
             if shape.axial_force[k] * cell * cell > TAUT * ei {
                 sag = sag.max((ei * off / shape.axial_force[k]).abs());
                 off = 0.0;
@@ -131,18 +133,17 @@ pub(super) fn too_few_cells(
     kinetic: Option<f64>,
 ) -> Vec<String> {
     let told = |(index, (beam, shape)): (usize, (&Beam, &Shape))| {
-        let nodes = system.beams().get(index)?.basis.nodes();
+        let basis = &system.beams().get(index)?.basis;
         let is_imposed = model.parts.iter().any(|part| {
             let damping = (part.as_ref() as &dyn Any).downcast_ref::<BeamDamping>();
             let damps =
                 |of: &BeamDamping| of.beam == index && (of.strain.is_some() || of.curvature.is_some());
             part.actuation(index).is_some() || kinetic.is_some() && damping.is_some_and(damps)
         });
-        if is_imposed || shape.s.len() <= PLACES * (nodes.len() - 1) {
+        if is_imposed || shape.s.len() <= PLACES * (basis.nodes().len() - 1) {
             return None;
         }
-        let cell = nodes.windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
-        let Energies { off, bend, stretch, turn, sag } = Energies::of(beam, shape, cell)?;
+        let Energies { off, bend, stretch, turn, sag } = Energies::of(beam, basis, shape)?;
         let whole = bend + stretch + 2.0 * kinetic.unwrap_or(0.0);
         // In a motion what a string with a little bending stiffness is off may be any part of it.
         let is_string = kinetic.is_some() && off > bend;

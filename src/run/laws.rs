@@ -127,9 +127,9 @@ fn jumps_of(divided: &Model) -> Vec<Place> {
 /// jump with it. `system` has the nodes.
 pub(super) fn within_cells(divided: &Model, system: &System) -> Option<String> {
     let inside = |place: &Place| {
-        let nodes = system.beams()[place.beam].basis.nodes();
-        let cell = nodes.partition_point(|node| *node <= place.s).clamp(1, nodes.len() - 1);
-        let (left, right) = (nodes[cell - 1], nodes[cell]);
+        let basis = &system.beams()[place.beam].basis;
+        let cell = basis.cell_at(place.s);
+        let (left, right) = (basis.nodes()[cell], basis.nodes()[cell + 1]);
         (place.s - left).min(right - place.s) > AT_NODE * (right - left)
     };
     let Place { beam, s } = jumps_of(divided).into_iter().find(inside)?;

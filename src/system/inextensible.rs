@@ -155,11 +155,11 @@ impl System {
         let of_beam = self.lengths.iter().zip(rows).filter(|(row, _)| row.beam == beam);
         let known: Vec<(f64, f64)> =
             of_beam.map(|(row, (c, mu))| (row.s, mu * c.scale(self.stiffness, self.length))).collect();
-        let nodes = self.beams.get(beam)?.basis.nodes();
+        let basis = &self.beams.get(beam)?.basis;
         let value = |s: f64| known.iter().find(|(at, _)| *at == s).map_or(0.0, |(_, force)| *force);
         let at = |&s: &f64| {
-            let cell = nodes.partition_point(|node| *node <= s).clamp(1, nodes.len() - 1) - 1;
-            let (left, right) = (nodes[cell], nodes[cell + 1]);
+            let cell = basis.cell_at(s);
+            let (left, right) = (basis.nodes()[cell], basis.nodes()[cell + 1]);
             let middle = known.iter().find(|(at, _)| *at > left && *at < right);
             let [a, b, c] = functions((s - left) / (right - left), middle.is_none());
             a * value(left) + b * middle.map_or(0.0, |(_, force)| *force) + c * value(right)
