@@ -7,6 +7,9 @@ const DIVISIONS: usize = 20;
 /// Width of the bounds of a polynomial, relative to its largest value, at which the search ends.
 const TIGHT: f64 = 1e-9;
 
+/// Places nearer to each other than this part of their arc length are one place.
+const ONE_PLACE: f64 = 1e-9;
+
 /// A quantity as a function of the arc length s \[m\].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Along {
@@ -58,12 +61,15 @@ impl Along {
                 value[right - 1] + part * (value[right] - value[right - 1])
             }
             Self::Polynomial(terms) => terms.iter().rev().fold(0.0, |sum, term| sum * s + term),
-            Self::Pieces { until, value } => value[until.partition_point(|end| *end < inside)],
+            Self::Pieces { until, value } => {
+                let here = beside(s, inside);
+                value[until.partition_point(|end| *end < here)]
+            }
             Self::Product(factors) => factors.iter().map(|factor| factor.at(s, inside)).product(),
             Self::Sum(terms) => terms.iter().map(|term| term.at(s, inside)).sum(),
             Self::Quotient(pair) => pair[0].at(s, inside) / pair[1].at(s, inside),
             Self::Within { from, to, quantity } => {
-                if (*from..=*to).contains(&inside) {
+                if (*from..=*to).contains(&beside(s, inside)) {
                     quantity.at(s, inside)
                 } else {
                     0.0
@@ -79,7 +85,8 @@ impl Along {
         match self {
             Self::Constant(_) | Self::Pieces { .. } => 0.0,
             Self::Table { s: places, value } => {
-                let right = places.partition_point(|place| *place <= inside);
+                let here = beside(s, inside);
+                let right = places.partition_point(|place| *place <= here);
                 if right == 0 || right == places.len() {
                     return 0.0;
                 }
@@ -102,7 +109,7 @@ impl Along {
                 (slope(&pair[0]) - above / below * slope(&pair[1])) / below
             }
             Self::Within { from, to, quantity } => {
-                if (*from..=*to).contains(&inside) {
+                if (*from..=*to).contains(&beside(s, inside)) {
                     slope(quantity)
                 } else {
                     0.0
@@ -304,6 +311,12 @@ impl Along {
     }
 }
 
+/// A place beside `s` on the side of `inside`, so near that no jump but one at `s` itself lies between.
+fn beside(s: f64, inside: f64) -> f64 {
+    let reach = ONE_PLACE * s.abs().max(inside.abs());
+    s + (inside - s).clamp(-reach, reach)
+}
+
 /// Adds the abscissae of the inner points without which straight lines would miss one by more than
 /// `tolerance`.
 fn off_the_line(points: &[[f64; 2]], tolerance: f64, found: &mut Vec<f64>) {
@@ -416,6 +429,18 @@ mod tests {
     }
 
     /// As tables of an inventory show it.
+    /// However far the place is that names the side: one beyond other jumps does, too.
+    #[test]
+    fn a_place_beyond_other_jumps_names_a_side() {
+        let pieces = Along::Pieces { until: vec![1.0, 2.0], value: vec![5.0, 7.0, 6.0] };
+        let values = [(0.5, 9.0), (1.5, 0.0), (1.5, 9.0), (1.0, 0.0), (1.0, 9.0), (2.0, 0.0), (2.0, 9.0)];
+        assert_eq!(values.map(|(s, inside)| pieces.at(s, inside)), [5.0, 7.0, 7.0, 5.0, 7.0, 7.0, 6.0]);
+        let stretch = Along::Polynomial(vec![0.0, 3.0]).within([1.0, 2.0]);
+        let values = [(0.5, 1.5), (1.0, 9.0), (1.5, 9.0), (1.5, 0.0), (2.0, 0.0), (2.0, 9.0)];
+        assert_eq!(values.map(|(s, inside)| stretch.slope(s, inside)), [0.0, 3.0, 3.0, 3.0, 3.0, 0.0]);
+        assert_eq!([(1.0, 0.0), (1.0, 9.0)].map(|(s, inside)| table().slope(s, inside)), [2.0, -1.5]);
+    }
+
     #[test]
     fn it_is_written_as_it_is_given() {
         for (along, text) in [

@@ -7,9 +7,9 @@
 //! ε = (EI N − EB M)/(EA EI − EB²),   κ = κ₀ + (EA M − EB N)/(EA EI − EB²)
 //! ```
 //!
-//! with the curvature κ₀ of the curve along which the beam is laid out. Those of the shape functions, which are derivatives, differ from
-//! these by their own error, and moments, which forces make with positions as levers, by what those are off; of taut beams this is all there
-//! is. The energy of the difference is that by which a beam is too stiff (W. Prager and J. L. Synge, Quarterly of Applied Mathematics 5,
+//! with the curvature κ₀ of the curve along which the beam is laid out, and with what [actuation](System::imposed) takes from N and M added to
+//! them. Those of the shape functions, which are derivatives, differ from these by their own error, and moments, which forces make with
+//! positions as levers, by what those are off; of taut beams this is all there is. The energy of the difference is that by which a beam is too stiff (W. Prager and J. L. Synge, Quarterly of Applied Mathematics 5,
 //! 1947), so that one run tells whether its cells are too few.
 
 use crate::basis::Basis;
@@ -32,8 +32,19 @@ const SLIGHT: f64 = 1e-9;
 const TAUT: f64 = 30.0;
 /// … of which this part of its length is tolerated.
 const TOLERATED_SAG: f64 = 0.005;
-/// Places in each cell that show what it is off.
-const PLACES: usize = 4;
+
+/// What is imposed on a beam.
+pub(crate) struct ImposedForces<'a> {
+    /// By how much an actuation lowers the axial force \[N\] and the bending moment \[N m\] at a place where they do not jump.
+    pub at: &'a dyn Fn(f64) -> [f64; 2],
+    /// Arc lengths at which they jump \[m\].
+    pub jumps: Vec<f64>,
+}
+
+impl ImposedForces<'_> {
+    /// Nothing is imposed.
+    pub const NONE: Self = Self { at: &|_| [0.0; 2], jumps: Vec::new() };
+}
 
 /// What a shape is off at each of its places: what its shape functions have less what belongs to its forces, and nothing where something
 /// jumps, which the strain there is a compromise of.
@@ -45,7 +56,7 @@ pub(crate) struct OffBalance {
 
 impl OffBalance {
     /// `None` where forces do not tell strains: of elastic laws, and where the forces are not known.
-    pub fn of(beam: &Beam, shape: &Shape) -> Option<Self> {
+    pub fn of(beam: &Beam, shape: &Shape, imposed: &ImposedForces) -> Option<Self> {
         let section = &beam.section;
         let curve = Curve::new(&beam.centreline).ok()?;
         let given =
@@ -53,7 +64,8 @@ impl OffBalance {
         if !section.is_linear() || !given {
             return None;
         }
-        let jumps: Vec<f64> = curve.kinks().into_iter().chain(section.breaks()).collect();
+        let jumps: Vec<f64> =
+            curve.kinks().into_iter().chain(section.breaks()).chain(imposed.jumps.iter().copied()).collect();
         let mut off = Self { strain: Vec::new(), curvature: Vec::new() };
         for (k, &s) in shape.s.iter().enumerate() {
             let is_twice = is_before(&shape.s, k) || k.checked_sub(1).is_some_and(|k| is_before(&shape.s, k));
@@ -67,7 +79,8 @@ impl OffBalance {
                 StrainMeasure::Green => beam.strain.stretch(shape.strain[k]),
                 StrainMeasure::Engineering => 1.0,
             };
-            let [n, m] = [shape.axial_force[k] / by_stretch, shape.bending_moment[k]];
+            let [taken, taken_moment] = (imposed.at)(s);
+            let [n, m] = [shape.axial_force[k] / by_stretch + taken, shape.bending_moment[k] + taken_moment];
             let [strain, bend] = match (axial, bending, coupling) {
                 _ if jumps => [None; 2],
                 (Some(ea), Some(ei), Some(eb)) => {
@@ -94,10 +107,10 @@ struct Energies {
 
 impl Energies {
     /// `None` where they are not known.
-    fn of(beam: &Beam, basis: &Basis, shape: &Shape) -> Option<Self> {
+    fn of(beam: &Beam, basis: &Basis, shape: &Shape, imposed: &ImposedForces) -> Option<Self> {
         let bending = beam.section.bending_stiffness.as_ref()?;
         let curve = Curve::new(&beam.centreline).ok()?;
-        let off = OffBalance::of(beam, shape)?;
+        let off = OffBalance::of(beam, shape, imposed)?;
         let inside = 0.5 * curve.length();
         let mut sag = 0.0_f64;
         let mut at = |k: usize| {
@@ -124,26 +137,31 @@ impl Energies {
     }
 }
 
-/// A warning for each beam whose curvature, or sag in an equilibrium, is off by a part that matters in the `last` state, which in a motion has a
-/// `kinetic` energy \[J\]. What is imposed on a beam makes a curvature without a moment, and what damps its bending a moment without a curvature.
+/// A warning for each beam whose curvature, or sag in an equilibrium, is off by a part that matters in the `last` state, at the load factor or the
+/// time `parameter`. In a motion it has a `kinetic` energy \[J\], and what damps the bending of a beam makes a moment without a curvature.
 pub(super) fn too_few_cells(
     model: &Model,
     system: &System,
-    last: &[Shape],
+    (parameter, last): (f64, &[Shape]),
     kinetic: Option<f64>,
 ) -> Vec<String> {
     let told = |(index, (beam, shape)): (usize, (&Beam, &Shape))| {
         let basis = &system.beams().get(index)?.basis;
-        let is_imposed = model.parts.iter().any(|part| {
+        let is_damped = model.parts.iter().any(|part| {
             let damping = (part.as_ref() as &dyn Any).downcast_ref::<BeamDamping>();
-            let damps =
-                |of: &BeamDamping| of.beam == index && (of.strain.is_some() || of.curvature.is_some());
-            part.actuation(index).is_some() || kinetic.is_some() && damping.is_some_and(damps)
+            damping.is_some_and(|of| of.beam == index && (of.strain.is_some() || of.curvature.is_some()))
         });
-        if is_imposed || shape.s.len() <= PLACES * (basis.nodes().len() - 1) {
+        // With less than one place in a cell, what it is off is not seen.
+        if kinetic.is_some() && is_damped || shape.s.len() < basis.nodes().len() {
             return None;
         }
-        let Energies { off, bend, stretch, turn, sag } = Energies::of(beam, basis, shape)?;
+        let parts = model.parts.iter().filter_map(|part| part.actuation(index));
+        let jumps = parts.flat_map(|imposed| [imposed.strain.jumps(), imposed.curvature.jumps()]).flatten();
+        let imposed = ImposedForces {
+            at: &|s| system.imposed(index, s, s, parameter).map(|parts| parts.iter().sum()),
+            jumps: jumps.collect(),
+        };
+        let Energies { off, bend, stretch, turn, sag } = Energies::of(beam, basis, shape, &imposed)?;
         let whole = bend + stretch + 2.0 * kinetic.unwrap_or(0.0);
         // In a motion what a string with a little bending stiffness is off may be any part of it.
         let is_string = kinetic.is_some() && off > bend;
@@ -173,8 +191,12 @@ mod tests {
     use crate::scene::parse;
 
     fn warnings(basis: &str, more: &str) -> Vec<String> {
+        warnings_of("1", basis, more)
+    }
+
+    fn warnings_of(stiffness: &str, basis: &str, more: &str) -> Vec<String> {
         let text = format!(
-            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1, mass_per_length = 1, basis = {{ {basis} }} }}\n\
+            "beam.arm = {{ start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = {stiffness}, mass_per_length = 1, basis = {{ {basis} }} }}\n\
              [[support]]\nbeam = 'arm'\nat = 'start'\nfix = ['x', 'y', 'angle']\n[analysis.static]\n{more}"
         );
         let scene = parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
@@ -195,10 +217,17 @@ mod tests {
         );
         assert_eq!(warnings("ancf.elements = 6", moment), [""; 0]);
         assert_eq!(warnings("rpim.nodes = 5", moment), [""; 0]);
-        assert_eq!(
-            warnings("ancf.elements = 3", "[[effect.actuation]]\nbeam = 'arm'\ncurvature = 6\n"),
-            [""; 0]
-        );
+    }
+
+    /// The same circle as the stress-free shape of an actuated beam, whose moments vanish.
+    #[test]
+    fn cells_that_follow_no_actuation_are_told() {
+        let curled = "[[effect.actuation]]\nbeam = 'arm'\ncurvature = 6.283185307179586\n";
+        let found = warnings("ancf.elements = 3", curled);
+        assert!(found.len() == 1 && found[0].contains("by 15 %"), "{found:?}");
+        assert_eq!(warnings("ancf.elements = 6", curled), [""; 0]);
+        let partly = "[[effect.actuation]]\nbeam = 'arm'\ncurvature = { pieces = { until = [0.5], value = [2, -3] } }\n";
+        assert_eq!(warnings("ancf.elements = 8", partly), [""; 0]);
     }
 
     /// Of the moment q (L − s)²/2 of a beam under its weight one element can have all but q L² (6ξ² − 6ξ + 1)/12, of which the square is
@@ -209,6 +238,17 @@ mod tests {
         let found = warnings("ancf.elements = 1", weight);
         assert!(found.len() == 1 && found[0].contains("by 17 %"), "{found:?}");
         assert_eq!(warnings("ancf.elements = 2", weight), [""; 0]);
+    }
+
+    /// Where the stiffness jumps the curvature does, and at each place it is that of the stiffness there.
+    #[test]
+    fn steps_of_the_stiffness_are_followed() {
+        let moment = "[[effect.moment]]\nbeam = 'arm'\nat = 'end'\nvalue = 3\n";
+        let stepped = |basis: &str| {
+            warnings_of("{ pieces = { until = [0.3, 0.6], value = [4, 1, 3] } }", basis, moment)
+        };
+        assert_eq!(stepped("ancf.elements = 10"), [""; 0]);
+        assert_eq!(stepped("ancf.nodes = [0, 0.3, 0.6, 1]").len(), 0);
     }
 
     /// What is pulled by 2000 EI/L² is straight but for a 45th of its length, which tells nothing of where it is.

@@ -24,10 +24,18 @@ pub(super) struct Actuated {
     amplitudes: Vec<Option<Amplitude>>,
     /// The strains that are imposed on single layers: index of the layer, strain, and a_i.
     layers: Vec<(usize, Along, Option<Amplitude>)>,
-    /// EA ε₀ᵢ \[N\], and a_i.
-    forces: Vec<(Along, Option<Amplitude>)>,
+    taken: Vec<Taken>,
     /// ∫ EA ε₀ᵢ ε₀ⱼ ds, and ∫ (EI κ₀ᵢ κ₀ⱼ + EB ε₀ᵢ κ₀ⱼ + EB κ₀ᵢ ε₀ⱼ) ds \[J\], of row i and column j.
     own: [Vec<Vec<f64>>; 2],
+}
+
+/// What one actuation takes from the axial force and the bending moment of a beam, as far as it has such stiffnesses.
+#[derive(Debug)]
+struct Taken {
+    /// EA ε₀ᵢ and EB κ₀ᵢ \[N\], EB ε₀ᵢ and EI κ₀ᵢ \[N m\].
+    forces: [[Option<Along>; 2]; 2],
+    /// a_i.
+    amplitude: Option<Amplitude>,
 }
 
 /// Collects the actuations of the model's parts and of those that are `fading` by beam.
@@ -88,16 +96,25 @@ pub(super) fn actuated(model: &Model, fading: &[(Arc<dyn Part>, f64)], system: &
             Some((imposed.layer?, imposed.strain.clone(), amplitude.clone()))
         });
         let layers = layers.collect();
-        let forces = parts.iter().filter_map(|(imposed, amplitude)| {
-            let stiffness = match imposed.layer {
-                Some(layer) => section.layers.get(layer)?.stiffness.as_ref().map(|stiffness| &stiffness[0]),
-                None => section.axial_stiffness.as_ref(),
+        let taken = parts.iter().filter_map(|(imposed, amplitude)| {
+            let [strain, curvature] = [imposed.strain, imposed.curvature];
+            let forces = match imposed.layer {
+                Some(layer) => {
+                    let stiffness = section.layers.get(layer)?.stiffness.as_ref();
+                    [0, 1].map(|part| [stiffness.map(|stiffness| stiffness[part].product(strain)), None])
+                }
+                None => {
+                    let by = |stiffness: &Option<Along>, along| stiffness.as_ref().map(|s| s.product(along));
+                    let coupled = |along| by(&section.coupling, along);
+                    let (axial, bending) = (&section.axial_stiffness, &section.bending_stiffness);
+                    [[by(axial, strain), coupled(curvature)], [coupled(strain), by(bending, curvature)]]
+                }
             };
-            Some((stiffness?.product(imposed.strain), amplitude.clone()))
+            Some(Taken { forces, amplitude: amplitude.clone() })
         });
-        let forces = forces.collect();
+        let taken = taken.collect();
         let own = || [rows(&stretch), rows(&bend)];
-        (!parts.is_empty()).then(|| Actuated { beam: index, amplitudes, layers, forces, own: own() })
+        (!parts.is_empty()).then(|| Actuated { beam: index, amplitudes, layers, taken, own: own() })
     };
     model.beams.iter().zip(&system.beams).enumerate().filter_map(of_beam).collect()
 }
@@ -175,10 +192,21 @@ impl System {
     /// The force Σ a_i EA ε₀ᵢ \[N\] at `s` that actuation takes from EA ε; `inside` is a place of the
     /// same cell.
     pub fn imposed_force(&self, beam: usize, s: f64, inside: f64, parameter: f64) -> f64 {
+        self.imposed(beam, s, inside, parameter)[0][0]
+    }
+
+    /// What actuation takes from the axial force and the bending moment at `s`, each as the parts that the imposed strain and
+    /// the imposed curvature have in it \[N, N m\]; `inside` is a place of the same cell.
+    pub fn imposed(&self, beam: usize, s: f64, inside: f64, parameter: f64) -> [[f64; 2]; 2] {
+        let mut sum = [[0.0; 2]; 2];
         let of_beam = self.actuated.iter().filter(|actuated| actuated.beam == beam);
-        let forces = of_beam.flat_map(|actuated| &actuated.forces);
-        let at = |amplitude| self.amplitude_or_own(amplitude).at(parameter);
-        forces.map(|(force, amplitude)| at(amplitude) * force.at(s, inside)).sum()
+        for Taken { forces, amplitude } in of_beam.flat_map(|actuated| &actuated.taken) {
+            let amplitude = self.amplitude_or_own(amplitude).at(parameter);
+            for (sum, force) in sum.as_flattened_mut().iter_mut().zip(forces.as_flattened()) {
+                *sum += force.as_ref().map_or(0.0, |force| amplitude * force.at(s, inside));
+            }
+        }
+        sum
     }
 
     /// Whether there are any actuators.

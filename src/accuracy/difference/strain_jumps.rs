@@ -227,3 +227,19 @@ fn sides(
     };
     Some([side(before, 0.5 * s)?, side(behind, 0.5 * (s + length))?])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::parse;
+
+    /// Steps that follow each other within a tenth of the beam, and the last of which leads back to the stiffness of the first piece.
+    #[test]
+    fn every_step_of_the_stiffness_is_a_jump() {
+        let text = "beam.bar = { start = [0, 0], end = [2, 0], mass_per_length = 1, bending_stiffness = 1, \
+                    axial_stiffness = { pieces = { until = [0.25, 0.5, 1.5], value = [10, 1000, 10, 10] } } }\n\
+                    [analysis.modal]\n";
+        let model = parse("scene", text).unwrap().model().clone();
+        assert_eq!(stiffness_jumps(&model, 0, 2.0), [0.25, 0.5]);
+    }
+}

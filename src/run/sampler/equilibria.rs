@@ -68,7 +68,8 @@ impl Sampler<'_> {
             trajectory.run.warnings.extend(imbalance::out_of_balance(self.system, *load, x, variables));
         }
         if !self.is_compared() {
-            let told = too_few_cells(self.model, self.system, &trajectory.last, None);
+            let load = solution.states.last().map_or(1.0, |(load, _)| *load);
+            let told = too_few_cells(self.model, self.system, (load, &trajectory.last), None);
             trajectory.run.warnings.extend(told);
         }
         let states = [solution.states.first(), solution.states.last()].into_iter().flatten();

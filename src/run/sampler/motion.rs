@@ -98,7 +98,8 @@ impl Sampler<'_> {
         }
         if !self.is_compared() {
             let kinetic = trajectory.energy.last().map_or(0.0, |energy| energy.kinetic);
-            let told = too_few_cells(self.model, self.system, &trajectory.last, Some(kinetic));
+            let time = solution.states.last().map_or(0.0, |state| state.time);
+            let told = too_few_cells(self.model, self.system, (time, &trajectory.last), Some(kinetic));
             trajectory.run.warnings.extend(told);
         }
         for &dynamics::ProbeEvent { watch, time, value, rates } in &solution.events {
