@@ -28,7 +28,7 @@ mod tendons;
 mod velocities;
 mod waves;
 
-pub(crate) use balance::{ImposedForces, OffBalance};
+pub(crate) use balance::{OffBalance, StressFree};
 pub use error::RunError;
 pub(crate) use laws::stiffness_jumps;
 pub use shapes::shapes_at;

@@ -297,9 +297,8 @@ fn table(results: &Results, directory: &Path) -> String {
             work.push(format!("{count} {}", if count == 1 { one } else { many }));
         }
     }
-    if let Some(error) = &run.error {
-        row("error", error_text(error, run.analysis));
-    }
+    let unknown = || "not estimated (`--error` does)".to_owned();
+    row("error", run.error.as_ref().map_or_else(unknown, |error| error_text(error, run.analysis)));
     row("unknowns", run.degrees_of_freedom.to_string());
     if !work.is_empty() {
         row("work", work.join(", "));
@@ -649,6 +648,7 @@ mod tests {
             ..Trajectory::default()
         };
         let expected = "  energy    stretch 0 J, bend 0.5 J, kinetic 0 J, potential 0 J, total 0.5 J
+  error     not estimated (`--error` does)
   unknowns  0
   work      1 step, 1 Newton iteration, 1 factorisation
   seconds   build 0.000, solve 0.000, write 0.000
@@ -737,6 +737,7 @@ Arm
   event at tip   0.5625 s: angle = 0.75 rad, a maximum
   contact arm.1  0.625 s: begins
   contact arm.1  0.6875 s: ends, impulse (0.5, -0.25) N s, up to 32 N
+  error          not estimated (`--error` does)
   unknowns       44
   work           12 steps, 1 rejected, 24 Newton iterations
   seconds        build 0.125, solve 1.500, write 0.062
@@ -808,6 +809,7 @@ Arm
 Arm
   frequency 1  0 Hz (nothing resists)
   frequency 2  12.5 Hz
+  error        not estimated (`--error` does)
   unknowns     0
   seconds      build 0.000, solve 0.000, write 0.000
   report       a/report.html";
@@ -817,6 +819,7 @@ Arm
         let expected = "\
 Arm
   critical load 1  2.467 × the load
+  error            not estimated (`--error` does)
   unknowns         0
   seconds          build 0.000, solve 0.000, write 0.000
   report           a/report.html";

@@ -220,6 +220,26 @@ fn a_stay_whose_cells_cannot_fold_is_told() {
     assert!(!pressed(&folds) && (tip - 0.129_553).abs() < 2e-6, "{tip}: {:?}", folds.run.warnings);
 }
 
+/// A cable with a weight at its end hangs in a current, whose drag on the straight cable is larger than what its bending stiffness resists. Its tension
+/// holds it, and it has one equilibrium.
+#[test]
+fn a_cable_in_a_current_does_not_buckle() {
+    let found = solve(
+        "beam.cable = { start = [0, 0], end = [0, -100], axial_stiffness = 5e6, bending_stiffness = 50, mass_per_length = 3, basis.ancf.elements = 40 }
+        support = [{ beam = 'cable', at = 'start', fix = ['x', 'y'] }]
+        effect.gravity.acceleration = [0, -9.81]
+        effect.buoyancy = [{ beam = 'cable', displaced_mass_per_length = 1.5 }]
+        effect.drag = [{ beam = 'cable', normal = 24, tangential = 0.3, flow = [1.5, 0] }]
+        effect.point_mass = [{ beam = 'cable', at = 'end', mass = 50 }]
+        probe = [{ name = 'end', beam = 'cable', at = 'end' }]
+        analysis.static = {}\n",
+    );
+    let end = found.probes[0].samples.last().expect("a record");
+    // The boundary value problem of the elastica in a current, by collocation.
+    assert!((end.x - 79.91350).hypot(end.y + 56.76615) < 2e-2, "{} {}", end.x, end.y);
+    assert_eq!(found.run.warnings, [""; 0]);
+}
+
 /// A string that an actuation shortens pulls with what it resists, and stores no more than that.
 #[test]
 fn a_string_that_is_shortened_does_not_hold_itself() {

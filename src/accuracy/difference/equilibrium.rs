@@ -8,7 +8,7 @@ use crate::accuracy::mesh::{CellErrors, Mesh};
 use crate::model::{Beam, Model};
 use crate::results::places::interpolated;
 use crate::results::{AnalysisKind, Shape, Trajectory};
-use crate::run::{ImposedForces, OffBalance};
+use crate::run::{OffBalance, StressFree};
 
 /// Makes what curvatures and strains of the last record of a `run` differ by from those of a coarser one at least what they are off the
 /// forces that balance it, where it ends with an equilibrium.
@@ -64,7 +64,7 @@ impl Off {
     /// What is certain of them where positions are `known` to be off by so much \[m\], and moments by as much times the largest force. `None`
     /// where forces do not tell strains.
     fn of(beam: &Beam, shape: &Shape, known: f64) -> Option<Self> {
-        let OffBalance { strain, curvature } = OffBalance::of(beam, shape, &ImposedForces::NONE)?;
+        let OffBalance { strain, curvature } = OffBalance::of(beam, shape, &StressFree::curve(beam, shape)?)?;
         let forces = shape.axial_force.iter().chain(&shape.shear_force);
         let unsure = known * forces.fold(0.0_f64, |most, force| most.max(force.abs()));
         let inside = 0.5 * shape.s.last()?;

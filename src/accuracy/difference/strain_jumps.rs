@@ -238,7 +238,7 @@ mod tests {
     fn every_step_of_the_stiffness_is_a_jump() {
         let text = "beam.bar = { start = [0, 0], end = [2, 0], mass_per_length = 1, bending_stiffness = 1, \
                     axial_stiffness = { pieces = { until = [0.25, 0.5, 1.5], value = [10, 1000, 10, 10] } } }\n\
-                    [analysis.modal]\n";
+                    [analysis.modal]\ncount = 1\n";
         let model = parse("scene", text).unwrap().model().clone();
         assert_eq!(stiffness_jumps(&model, 0, 2.0), [0.25, 0.5]);
     }
