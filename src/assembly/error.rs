@@ -93,7 +93,8 @@ pub enum BuildError {
          apart"
     )]
     #[diagnostic(help(
-        "let the stress-free shapes of the beams meet where they are joined, to 1e-9 of a beam's length"
+        "let the stress-free shapes of the beams meet where they are joined, to 1e-9 of a beam's length{}",
+        meets.as_ref().map_or_else(String::new, |(beam, s)| format!(": beam `{beam}` does at s = {s} m"))
     ))]
     Apart {
         /// The first beam's name.
@@ -108,6 +109,8 @@ pub enum BuildError {
         at: [f64; 2],
         /// Their distance \[m\].
         gap: f64,
+        /// The name of one of the beams and the arc length \[m\] at which it meets the point of the other one, if it does.
+        meets: Option<(String, f64)>,
     },
     /// A support that lies between nodes moves with time.
     #[error("the support of beam `{beam}` at s = {s} m moves with time and lies between two nodes")]

@@ -25,6 +25,8 @@ use std::any::Any;
 const TOLERATED: f64 = 0.005;
 /// … and of its whole energy: a little bending of what is taut, or of what moves like a rigid body, moves nothing.
 const IRRELEVANT: f64 = 1e-3;
+/// In a motion also the part of the turn of a mean cell \[rad\]: what begins at once excites waves that are shorter than any cells, and moves little by them.
+const TOLERATED_TURN: f64 = 0.01;
 /// Turns of a beam below this are round-off \[rad\].
 const SLIGHT: f64 = 1e-9;
 /// Where the axial force is more than so many times EI/h², with cells of the length h, a beam is a string but for layers within cells. What its
@@ -185,7 +187,9 @@ pub(super) fn too_few_cells(
         let whole = bend + stretch + 2.0 * kinetic.unwrap_or(0.0);
         // In a motion what a string with a little bending stiffness is off may be any part of it.
         let is_string = kinetic.is_some() && off > bend;
-        let matters = !is_string && off > TOLERATED * bend && off > IRRELEVANT * whole;
+        let cells = (basis.nodes().len() - 1) as f64;
+        let is_slight = kinetic.is_some() && (off / bend).sqrt() * turn < TOLERATED_TURN * cells;
+        let matters = !is_string && !is_slight && off > TOLERATED * bend && off > IRRELEVANT * whole;
         let what = if kinetic.is_none() && sag > TOLERATED_SAG * shape.s.last()? {
             format!(
                 "the axis of beam `{}` is off the line on which tension balances its loads by {sag:.1e} m: its cells are too few for its sag",

@@ -13,8 +13,8 @@ pub(super) fn coils(model: &Model) -> impl Iterator<Item = String> {
         let turns = (to - from).abs() / TAU;
         (turns > 1.0 + MORE).then(|| {
             format!(
-                "beam `{}` is an arc of {turns:.2} turns, which lies on itself; angles without a unit are in radians: a quarter of a circle ends at \
-                 \"90 deg\"",
+                "beam `{}` is an arc of {turns:.2} turns, which lies on itself; a number alone is an angle in radians, and text may be one in degrees, \
+                 as \"90 deg\"",
                 beam.name
             )
         })

@@ -17,12 +17,14 @@
 use super::constraints::Constraint;
 use super::polar::Polar;
 use super::reaction::Source;
-use super::{BuildError, System};
+use super::{BuildError, Fields, System};
 use crate::basis::BasisTable;
 use crate::model::{Joint, Place};
 
 /// Largest distance of two points that coincide, in beam lengths.
 const APART: f64 = 1e-9;
+/// Steps of Newton's method, of which a curve takes a few.
+const STEPS_TO_NEAREST: usize = 8;
 
 /// The constraint rows of a joint; `open` tells whether its points may be apart at the start.
 pub(super) fn rows(system: &System, joint: Joint, open: bool) -> Result<Vec<Constraint>, BuildError> {
@@ -51,6 +53,10 @@ fn coincide(system: &System, open: bool, first: Place, second: Place) -> Result<
     let gap = x.hypot(y);
     if gap > APART * system.length() && !open {
         let name = |place: Place| system.beams()[place.beam].name.clone();
+        let meets = |place: Place, other: Place| {
+            let s = nearest(system, place, system.fields_of(other)?.position)?;
+            Ok::<_, BuildError>(s.map(|s| (name(place), s)))
+        };
         return Err(BuildError::Apart {
             first: name(first),
             first_s: first.s,
@@ -58,10 +64,26 @@ fn coincide(system: &System, open: bool, first: Place, second: Place) -> Result<
             second_s: second.s,
             at: system.fields_of(first)?.position,
             gap,
+            meets: meets(first, second)?.or(meets(second, first)?),
         });
     }
     // The remaining distance is round-off and is not kept as a gap.
     Ok(rows.map(|row| row.closed()))
+}
+
+/// The arc length near a place at which its beam goes through a point, if it does.
+fn nearest(system: &System, place: Place, point: [f64; 2]) -> Result<Option<f64>, BuildError> {
+    let end = system.beams()[place.beam].basis.length();
+    let mut here = place;
+    for _ in 0..STEPS_TO_NEAREST {
+        let Fields { position: [x, y], gradient: [dx, dy], .. } = system.fields_of(here)?;
+        let [x, y] = [point[0] - x, point[1] - y];
+        if x.hypot(y) <= APART * system.length() {
+            return Ok(Some(here.s));
+        }
+        here.s = (here.s + (x * dx + y * dy) / dx.hypot(dy).powi(2)).clamp(0.0, end);
+    }
+    Ok(None)
 }
 
 fn keep_angle(system: &System, first: Place, second: Place) -> Result<Constraint, BuildError> {
@@ -123,4 +145,37 @@ pub(super) fn polar(system: &System, joints: &[Joint]) -> Result<Polar, BuildErr
     }
     pairs.retain(|pair| !fixed.contains(pair));
     Ok(Polar::new(pairs, welds, sliders))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::RunError;
+    use crate::scene::parse;
+
+    /// The beam that meets the other one's point where its arc length is given in full, and neither where none does.
+    fn meets(second: &str, at: &str) -> Option<(String, f64)> {
+        let text = format!(
+            "beam.bar = {{ start = [0, 0], end = [3, 4], axial_stiffness = 1, bending_stiffness = 1, basis.ancf.elements = 2 }}\n\
+             beam.strut = {{ {second}, axial_stiffness = 1, bending_stiffness = 1, basis.ancf.elements = 8 }}\n\
+             joint = [{{ type = 'hinge', first = {{ beam = 'bar', at = 2.000001 }}, second = {{ beam = 'strut', at = {at} }} }}]\n\
+             support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }}]\n[analysis.static]\n"
+        );
+        let scene = parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+        let Err(RunError::System(BuildError::Apart { meets, .. })) = scene.model().solve(scene.analysis())
+        else {
+            panic!("points of a joint that are apart")
+        };
+        meets
+    }
+
+    #[test]
+    fn a_joint_whose_points_are_apart_is_told_where_they_meet() {
+        let (beam, s) = meets("start = [1.2, 1.6], end = [1, -2]", "'start'").expect("a place of the bar");
+        assert!(beam == "bar" && (s - 2.0).abs() < 1e-8, "{beam} {s}");
+        let (beam, s) =
+            meets("start = [1.2000006, 1.7], end = [1.2000006, -2]", "0.1").expect("a place of the strut");
+        assert!(beam == "strut" && (s - 0.099_999_2).abs() < 1e-8, "{beam} {s}");
+        assert_eq!(meets("start = [1.3, 1.6], end = [1.3, -2]", "'start'"), None);
+    }
 }
