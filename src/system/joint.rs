@@ -158,7 +158,7 @@ mod tests {
         let text = format!(
             "beam.bar = {{ start = [0, 0], end = [3, 4], axial_stiffness = 1, bending_stiffness = 1, basis.ancf.elements = 2 }}\n\
              beam.strut = {{ {second}, axial_stiffness = 1, bending_stiffness = 1, basis.ancf.elements = 8 }}\n\
-             joint = [{{ type = 'hinge', first = {{ beam = 'bar', at = 2.000001 }}, second = {{ beam = 'strut', at = {at} }} }}]\n\
+             joint = [{{ type = 'weld', first = {{ beam = 'bar', at = 2.000001 }}, second = {{ beam = 'strut', at = {at} }} }}]\n\
              support = [{{ beam = 'bar', at = 'start', fix = ['x', 'y', 'angle'] }}]\n[analysis.static]\n"
         );
         let scene = parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
