@@ -428,7 +428,6 @@ mod tests {
         assert_eq!(table().times(2.0).at(0.5, 0.5), 6.0);
     }
 
-    /// As tables of an inventory show it.
     /// However far the place is that names the side: one beyond other jumps does, too.
     #[test]
     fn a_place_beyond_other_jumps_names_a_side() {
@@ -441,6 +440,7 @@ mod tests {
         assert_eq!([(1.0, 0.0), (1.0, 9.0)].map(|(s, inside)| table().slope(s, inside)), [2.0, -1.5]);
     }
 
+    /// As tables of an inventory show it.
     #[test]
     fn it_is_written_as_it_is_given() {
         for (along, text) in [

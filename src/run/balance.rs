@@ -25,7 +25,8 @@ use std::any::Any;
 const TOLERATED: f64 = 0.005;
 /// … and of its whole energy: a little bending of what is taut, or of what moves like a rigid body, moves nothing.
 const IRRELEVANT: f64 = 1e-3;
-/// In a motion also the part of the turn of a mean cell \[rad\]: what begins at once excites waves that are shorter than any cells, and moves little by them.
+/// In a motion a mean cell may turn by so much too much or too little \[rad\]: a load that begins suddenly excites waves that are shorter than any
+/// cells, which spoil the curvature and hardly the positions.
 const TOLERATED_TURN: f64 = 0.01;
 /// Turns of a beam below this are round-off \[rad\].
 const SLIGHT: f64 = 1e-9;
@@ -53,7 +54,7 @@ impl StressFree {
         Some(Self { curvature, taken: vec![[0.0; 2]; shape.s.len()], jumps: Vec::new() })
     }
 
-    /// The shape functions' part of that curve, which has no stress whatever it is off, and what is imposed at a load factor or a time.
+    /// What shape functions make of that curve, which has no stress although it may be off the curve, and what is imposed at a load factor or a time.
     fn of(model: &Model, system: &System, (index, shape): (usize, &Shape), parameter: f64) -> Option<Self> {
         let part = system.beams().get(index)?;
         let curvature = if part.straight {
@@ -215,7 +216,7 @@ mod tests {
     use crate::scene::parse;
 
     fn warnings(basis: &str, more: &str) -> Vec<String> {
-        warnings_of("1", basis, more)
+        warnings_of("1", basis, &format!("{more}[analysis.static]\n"))
     }
 
     fn warnings_of(stiffness: &str, basis: &str, more: &str) -> Vec<String> {
@@ -225,7 +226,7 @@ mod tests {
     fn warnings_along(line: &str, stiffness: &str, basis: &str, more: &str) -> Vec<String> {
         let text = format!(
             "beam.arm = {{ {line}, axial_stiffness = 1e5, bending_stiffness = {stiffness}, mass_per_length = 1, basis = {{ {basis} }} }}\n\
-             [[support]]\nbeam = 'arm'\nat = 'start'\nfix = ['x', 'y', 'angle']\n[analysis.static]\n{more}"
+             [[support]]\nbeam = 'arm'\nat = 'start'\nfix = ['x', 'y', 'angle']\n{more}"
         );
         let scene = parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
         let results = scene.model().solve(scene.analysis()).expect("an equilibrium");
@@ -271,7 +272,7 @@ mod tests {
     /// Where the stiffness jumps the curvature does, and at each place it is that of the stiffness there.
     #[test]
     fn steps_of_the_stiffness_are_followed() {
-        let moment = "[[effect.moment]]\nbeam = 'arm'\nat = 'end'\nvalue = 3\n";
+        let moment = "[[effect.moment]]\nbeam = 'arm'\nat = 'end'\nvalue = 3\n[analysis.static]\n";
         let stepped = |basis: &str| {
             warnings_of("{ pieces = { until = [0.3, 0.6], value = [4, 1, 3] } }", basis, moment)
         };
@@ -283,7 +284,9 @@ mod tests {
     #[test]
     fn curves_without_a_load_are_not_bent() {
         let arc = |force: f64| {
-            let force = format!("[[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [{force}, 0]\n");
+            let force = format!(
+                "[[effect.force]]\nbeam = 'arm'\nat = 'end'\nvalue = [{force}, 0]\n[analysis.static]\n"
+            );
             warnings_along(
                 "arc = { center = [0, 1], radius = 1, from = '-90 deg', to = 0 }",
                 "1",
@@ -292,6 +295,20 @@ mod tests {
             )
         };
         assert_eq!([0.0, 1e-4, 1.0].map(|force| arc(force).len()), [0; 3]);
+    }
+
+    /// In a motion cells that are too few are told, too. A moment that begins suddenly excites waves shorter than any cells, which are not.
+    #[test]
+    fn motions_in_cells_that_are_too_few_are_told() {
+        let motion = |basis: &str, more: &str, duration: f64| {
+            let analysis = format!("[analysis.dynamic]\nduration = {duration}\nradau.tolerance = 1e-5\n");
+            warnings_of("1", basis, &format!("{more}{analysis}"))
+        };
+        let curled = "[[effect.actuation]]\nbeam = 'arm'\ncurvature = 5\nin_time.ramp.duration = 0.5\n";
+        assert_eq!(motion("ancf.elements = 3", curled, 1.0).len(), 1);
+        assert_eq!(motion("ancf.elements = 20", curled, 1.0), [""; 0]);
+        let sudden = "[[effect.moment]]\nbeam = 'arm'\nat = 'end'\nvalue = 0.3\n";
+        assert_eq!(motion("ancf.elements = 32", sudden, 0.3), [""; 0]);
     }
 
     /// What is pulled by 2000 EI/L² is straight but for a 45th of its length, which tells nothing of where it is.

@@ -17,8 +17,8 @@ const OF_KINK: f64 = 1.0 / 12.0;
 /// The part of its largest strain under tension until then by which a string may be pressed in a motion without a warning: behind a sudden front
 /// shape functions overshoot by nearly as much.
 const PRESSED: f64 = 0.2;
-/// The same part of the largest strain of the whole motion, beside which less is nothing.
-const NOTHING: f64 = 0.005;
+/// The part of its largest strain in the whole motion below which its pressure is not worth a warning.
+const NEGLIGIBLE: f64 = 0.005;
 /// Strains below this are round-off.
 const NO_STRAIN: f64 = 1e-9;
 /// The part of the largest axial force of a structure at rest by which a string may be pressed without a warning: where a slack one folds, shape
@@ -107,8 +107,10 @@ impl Pressed {
     }
 
     pub(super) fn warnings(&self) -> impl Iterator<Item = String> + '_ {
-        let pressed =
-            self.strings.iter().filter(|string| string.shortest.0 < -NO_STRAIN.max(NOTHING * string.longest));
+        let pressed = self
+            .strings
+            .iter()
+            .filter(|string| string.shortest.0 < -NO_STRAIN.max(NEGLIGIBLE * string.longest));
         pressed.map(|PressedString { name, longest, shortest: (strain, time, s), .. }| {
             format!(
                 "string `{name}` is pressed, to a strain of {strain:.1e} at s = {} m and t = {} s (of {longest:.1e} where it is pulled most): nothing but the \
@@ -232,7 +234,7 @@ mod tests {
         let told: Vec<String> = pressed.warnings().collect();
         let start = "string `string` is pressed, to a strain of -6.0e-2 at s = 3.0000 m and t = 0.7500 s (of 2.5e-1 where it is pulled most)";
         assert!(told.len() == 1 && told[0].starts_with(start), "{told:?}");
-        // However far it is pulled later, but for what that makes nothing.
+        // It is told however far the string is pulled later, unless the pressure is negligible beside that.
         pressed.see(1.25, &shapes([8.0, 1.0]));
         assert_eq!(pressed.warnings().count(), 1);
         pressed.see(1.5, &shapes([16.0, 1.0]));

@@ -53,7 +53,7 @@ pub(super) fn relaxed(
         if let (None, Some(free)) = (solution.pressed, equilibrium.system().free_motions()) {
             let pressed = |unstable| UnstableMechanism { load, unstable, free };
             let unstable = moved.as_ref().and_then(|x| equilibrium.directions_at(load, x));
-            // Where drag or follower forces act, directions may lose stiffness and yet nothing buckles.
+            // Where drag or follower forces act, the tangent has no symmetry: directions may lose stiffness and yet nothing buckles.
             let tells = equilibrium.is_symmetric();
             solution.pressed = unstable.filter(|unstable| tells && *unstable > free).map(pressed);
         }
