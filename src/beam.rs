@@ -2,10 +2,12 @@
 
 mod along;
 mod elastic;
+mod product_rule;
 mod section;
 
 pub use along::Along;
 pub use elastic::{Elastic, NotElastic};
+pub(crate) use product_rule::ProductRule;
 pub use section::{Layer, Section};
 
 use crate::basis::{Discretization, Quadrature};

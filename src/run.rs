@@ -14,6 +14,7 @@ mod memory;
 mod modes;
 mod motion;
 mod origin;
+mod phase;
 mod sampler;
 mod sections;
 mod shapes;

@@ -349,15 +349,17 @@ impl<'a> Assembly<'a> {
         let index = extent.beam();
         let beam = self.beam(kind.name(), index)?;
         let part = &self.discretized[index];
+        let acting = |mut table: BasisTable| {
+            let factors = extent.factors(&table).unwrap_or_default();
+            table.keep_cells(|cell| factors[cell].iter().any(|factor| *factor != 0.0));
+            table
+        };
         let table = match extent {
             Extent::Beam(_, rule) => part.basis.table(*rule, orders),
             Extent::Weighted(_, rule, factor) => {
-                part.basis.divided_table(*rule, orders, &factor.kinks()).map(|mut table| {
-                    let factors = extent.factors(&table).unwrap_or_default();
-                    table.keep_cells(|cell| factors[cell].iter().any(|factor| *factor != 0.0));
-                    table
-                })
+                part.basis.divided_table(*rule, orders, &factor.kinks()).map(acting)
             }
+            Extent::Whole(_, rule, _) => part.basis.table(*rule, orders).map(acting),
             Extent::Point(place) => part.basis.points(&[part.arc_length(kind.name(), place.s)?], orders),
         };
         let table = table.map_err(|e| BuildError::basis(&beam.name, e))?;

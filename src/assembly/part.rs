@@ -2,7 +2,7 @@
 
 use super::{Assembly, BuildError, TendonPath};
 use crate::basis::{BasisTable, Quadrature};
-use crate::beam::{Along, Place};
+use crate::beam::{Along, Place, ProductRule};
 use crate::law::Law;
 use std::any::Any;
 use std::fmt;
@@ -130,6 +130,9 @@ pub enum Extent {
     /// Over a whole beam, times a factor that varies along it; where the factor is not smooth,
     /// cells are divided.
     Weighted(usize, Quadrature, Arc<Along>),
+    /// Over a whole beam, times a factor that varies along it, at no more points than the rule has in a
+    /// cell ([`ProductRule`]).
+    Whole(usize, Quadrature, Arc<Along>),
     /// At one point, with weight 1.
     Point(Place),
 }
@@ -142,6 +145,14 @@ impl Extent {
         match quantity.constant() {
             Some(value) => (value, Self::Beam(beam, rule)),
             None => (1.0, Self::Weighted(beam, rule, Arc::new(quantity.clone()))),
+        }
+    }
+
+    /// As [`Self::along`] for what resists stretch: cells are not divided, since with more points than the rule has slender beams would lock.
+    pub fn along_whole_cells(beam: usize, rule: Quadrature, quantity: &Along) -> (f64, Self) {
+        match quantity.constant() {
+            Some(value) => (value, Self::Beam(beam, rule)),
+            None => (1.0, Self::Whole(beam, rule, Arc::new(quantity.clone()))),
         }
     }
 
@@ -159,8 +170,21 @@ impl Extent {
 
     /// The factor at each point of its table, where there is one.
     pub(super) fn factors(&self, table: &BasisTable) -> Option<Vec<f64>> {
-        let Self::Weighted(_, _, factor) = self else { return None };
-        Some(places(table).map(|[s, inside]| factor.at(s, inside)).collect())
+        match self {
+            Self::Weighted(_, _, factor) => {
+                Some(places(table).map(|[s, inside]| factor.at(s, inside)).collect())
+            }
+            Self::Whole(_, rule, factor) => {
+                let rule = ProductRule::new(*rule).ok()?;
+                let cells = table.cells.iter().zip(table.s.chunks(table.points_per_cell));
+                let values = cells.flat_map(|(cell, places)| {
+                    let length = table.block(*cell).0.iter().sum();
+                    rule.values(factor, places, length)
+                });
+                Some(values.collect())
+            }
+            Self::Beam(..) | Self::Point(_) => None,
+        }
     }
 
     /// As [`Self::along`] for a density with two coefficients that adds up from both: one sum for
@@ -181,7 +205,7 @@ impl Extent {
     /// Index of the beam.
     pub fn beam(&self) -> usize {
         match self {
-            Self::Beam(beam, _) | Self::Weighted(beam, ..) => *beam,
+            Self::Beam(beam, _) | Self::Weighted(beam, ..) | Self::Whole(beam, ..) => *beam,
             Self::Point(place) => place.beam,
         }
     }

@@ -107,22 +107,21 @@ impl Actuation {
         let of_stretch =
             force.zip(lever).map(|(force, (coupling, axial))| force.product(&coupling.over(axial)));
         let Some(of_stretch) = of_stretch else {
-            return moment.map_or(Ok(()), |moment| self.add_pre_curvature(assembly, bend, &moment));
+            let bending = moment.map(|moment| Extent::along(self.beam, bend, &moment));
+            return bending.map_or(Ok(()), |bending| self.add_pre_curvature(assembly, bending));
         };
-        self.add_pre_curvature(assembly, stretch, &of_stretch)?;
+        self.add_pre_curvature(assembly, Extent::along_whole_cells(self.beam, stretch, &of_stretch))?;
         let back = of_stretch.times(-1.0);
         let of_bending = moment.map_or_else(|| back.clone(), |moment| moment.plus(&back));
-        self.add_pre_curvature(assembly, bend, &of_bending)
+        self.add_pre_curvature(assembly, Extent::along(self.beam, bend, &of_bending))
     }
 
-    /// Adds −∫ M₀ κ ds.
+    /// Adds −∫ M₀ κ ds, with M₀ as a coefficient and an extent.
     fn add_pre_curvature(
         &self,
         assembly: &mut Assembly<'_>,
-        rule: Quadrature,
-        moment: &Along,
+        (moment, extent): (f64, Extent),
     ) -> Result<(), BuildError> {
-        let (moment, extent) = Extent::along(self.beam, rule, moment);
         assembly.load(Kind::PreCurvature, extent, self.law.as_ref(), |_| PreCurvature { moment })
     }
 
@@ -134,7 +133,7 @@ impl Actuation {
         (measure, rule): (StrainMeasure, Quadrature),
         force: &Along,
     ) -> Result<(), BuildError> {
-        let ((force, extent), law) = (Extent::along(self.beam, rule, force), self.law.as_ref());
+        let ((force, extent), law) = (Extent::along_whole_cells(self.beam, rule, force), self.law.as_ref());
         match measure {
             StrainMeasure::Green => assembly.load(kind, extent, law, |_| PreStrain::<Green>::new(force)),
             StrainMeasure::Engineering => {

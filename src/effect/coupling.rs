@@ -46,9 +46,9 @@ impl BeamCoupling {
         let lacks = || BuildError::missing(beam, "axial stiffness", "coupling");
         let [_, coupling, moved] = beam.section.coupled_stiffnesses().ok_or_else(lacks)?;
         let rule = beam.gauss_points.stretch_rule();
-        let (stiffness, extent) = Extent::along(self.beam, rule, &coupling);
+        let (stiffness, extent) = Extent::along_whole_cells(self.beam, rule, &coupling);
         assembly.elastic(Kind::Coupling, extent, |z| Coupling::<S>::new(stiffness, &z))?;
-        let (stiffness, extent) = Extent::along(self.beam, rule, &moved);
+        let (stiffness, extent) = Extent::along_whole_cells(self.beam, rule, &moved);
         assembly.elastic(Kind::Bend, extent, |z: Vec<[Vector2<f64>; 2]>| Bend::new(stiffness, &z))
     }
 }

@@ -164,7 +164,7 @@ impl Part for BeamDamping {
         if let Some(eta) = &self.strain {
             let stiffness = beam.section.summed_axial_stiffness().ok_or_else(|| lacks("axial stiffness"))?;
             let viscosity = stiffness.product(eta);
-            let (viscosity, extent) = Extent::along(self.beam, points.stretch_rule(), &viscosity);
+            let (viscosity, extent) = Extent::along_whole_cells(self.beam, points.stretch_rule(), &viscosity);
             match beam.strain {
                 StrainMeasure::Green => {
                     assembly.damping(Kind::Damping, extent, |_| StretchDamping::<Green>::new(viscosity))
@@ -180,9 +180,9 @@ impl Part for BeamDamping {
             }
             if let Some(eta) = &self.strain {
                 let rule = points.stretch_rule();
-                let (coefficient, extent) = Extent::along(self.beam, rule, &moved.product(eta));
+                let (coefficient, extent) = Extent::along_whole_cells(self.beam, rule, &moved.product(eta));
                 assembly.damping(Kind::Damping, extent, |_| BendDamping { coefficient })?;
-                let (viscosity, extent) = Extent::along(self.beam, rule, &coupling.product(eta));
+                let (viscosity, extent) = Extent::along_whole_cells(self.beam, rule, &coupling.product(eta));
                 match beam.strain {
                     StrainMeasure::Green => {
                         assembly.damping(Kind::Damping, extent, |_| CouplingDamping::<Green>::new(viscosity))

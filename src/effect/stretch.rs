@@ -36,7 +36,8 @@ impl Part for BeamStretch {
         let gradients = |z: Vec<[Vector2<f64>; 1]>| -> Vec<_> {
             if straight { Vec::new() } else { z.into_iter().map(|[r]| r).collect() }
         };
-        let (stiffness, extent) = Extent::along(self.beam, beam.gauss_points.stretch_rule(), &stiffness);
+        let (stiffness, extent) =
+            Extent::along_whole_cells(self.beam, beam.gauss_points.stretch_rule(), &stiffness);
         match beam.strain {
             StrainMeasure::Green => {
                 assembly.elastic(Kind::Stretch, extent, |z| Stretch::<Green>::new(stiffness, &gradients(z)))

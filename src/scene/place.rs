@@ -28,19 +28,13 @@ pub(super) fn beam_index(name: &Located<String>, built: &[Built]) -> Result<usiz
 pub(super) fn place(beam: &Located<String>, at: &Located<At>, built: &[Built]) -> Result<Place, Fault> {
     let index = beam_index(beam, built)?;
     let length = built.get(index).map_or(0.0, |b| b.curve.length());
-    let s = match *at.get() {
-        At::Start => 0.0,
-        At::End => length,
-        // An end typed with fewer digits than L has is meant as the end.
-        At::ArcLength(s) if (s - length).abs() <= 1e-9 * length => length,
-        At::ArcLength(s) if (0.0..=length).contains(&s) => s,
-        At::ArcLength(s) => {
-            return Err(Fault::new(
-                at.span(),
-                format!("arc length {s} m is not on beam `{}`, which is {length} m long", beam.get()),
-            )
-            .help(format!("give \"start\", \"end\" or an arc length from 0 to {length} m")));
-        }
-    };
+    let s = at.get().on(length);
+    if !(0.0..=length).contains(&s) {
+        return Err(Fault::new(
+            at.span(),
+            format!("arc length {s} m is not on beam `{}`, which is {length} m long", beam.get()),
+        )
+        .help(format!("give \"start\", \"end\" or an arc length from 0 to {length} m")));
+    }
     Ok(Place { beam: index, s })
 }

@@ -7,11 +7,9 @@ use crate::model::Along;
 use super::error::Fault;
 use super::file::{AlongBeam, AlongVector, PiecesTable, PlacesTable, VaryingTable};
 use super::place::{Built, beam_index, place};
-use super::quantity::{Length, Measure, Quantity, Range};
+use super::quantity::{Measure, Quantity, Range};
 use super::value::{At, Located};
 
-/// Distance from an end, in beam lengths, that counts as round-off.
-const ROUND_OFF: f64 = 1e-9;
 const ONE: &str = "give a number, or one of `{ table = { s = [0.0, 0.5, 1.0], value = [3.0, 2.0, 1.0] } }`, \
                    `{ polynomial = [3.0, -2.0] }`, `{ pieces = { until = [0.5], value = [3.0, 2.0] } }`";
 
@@ -38,7 +36,7 @@ impl Stretch {
             at.map_or(Ok(missing), |at| place(name, at, built).map(|place| place.s))
         };
         let ends = [end(from, 0.0)?, end(to, length)?];
-        if let (true, Some(at)) = (ends[1] - ends[0] <= ROUND_OFF * length, to.or(from)) {
+        if let (true, Some(at)) = (ends[1] - ends[0] <= At::ROUND_OFF * length, to.or(from)) {
             return Err(Fault::new(
                 at.span(),
                 format!("a stretch from {} m to {} m has no length", ends[0], ends[1]),
@@ -131,7 +129,7 @@ fn si<M, R>(values: &[Quantity<M, R>]) -> Vec<f64> {
 
 fn table(
     span: ByteRange<usize>,
-    places: &[Located<Quantity<Length>>],
+    places: &[Located<At>],
     values: Vec<f64>,
     key: &str,
     length: f64,
@@ -147,28 +145,18 @@ fn table(
         )
         .help("such as `table = { s = [0.0, 0.5, 1.0], value = [3.0, 2.0, 1.0] }`"));
     }
-    rising(places, key)?;
-    let mut s: Vec<f64> = places.iter().map(|s| s.get().si).collect();
-    let slack = ROUND_OFF * length;
+    let s = rising(places, key, length)?;
     let cover = |span: ByteRange<usize>, what: String| {
         Err(Fault::new(span, format!("`{key}`: {what} of the beam, which is {length} m long")).help(format!(
-            "give values from s = 0 to s = {length} m; a value that goes on unchanged is written twice"
+            "give values from s = 0 to s = {length} m, which is \"end\"; a value that goes on unchanged is written twice"
         )))
     };
     let (first, last) = (s[0], s[s.len() - 1]);
-    if first > slack {
+    if first > 0.0 {
         return cover(places[0].span(), format!("the table begins at {first} m, after the start"));
     }
-    if last < length - slack {
+    if last < length {
         return cover(places[s.len() - 1].span(), format!("the table ends at {last} m, before the end"));
-    }
-    // Ends typed with fewer digits than L has are meant as the ends.
-    for place in &mut s {
-        for end in [0.0, length] {
-            if (*place - end).abs() <= slack {
-                *place = end;
-            }
-        }
     }
     Ok(Along::Table { s, value: values })
 }
@@ -204,22 +192,20 @@ fn within<M: Measure, R: Range>(
 
 fn pieces(
     span: ByteRange<usize>,
-    places: &[Located<Quantity<Length>>],
+    places: &[Located<At>],
     values: Vec<f64>,
     key: &str,
     length: f64,
 ) -> Result<Along, Fault> {
-    rising(places, key)?;
-    let slack = ROUND_OFF * length;
-    let inside: Vec<f64> = places.iter().map(|s| s.get().si).take_while(|s| *s < length - slack).collect();
-    if let Some(place) = places.first().filter(|place| place.get().si <= slack) {
+    let ends = rising(places, key, length)?;
+    let inside: Vec<f64> = ends.iter().copied().take_while(|s| *s < length).collect();
+    if let Some((place, _)) = places.iter().zip(&ends).next().filter(|(_, end)| **end <= 0.0) {
         return Err(Fault::new(place.span(), format!("`{key}`: the first piece has no length"))
             .help("`until` holds the arc length at which each piece ends"));
     }
-    if let Some(beyond) = places.get(inside.len() + 1) {
+    if let Some((beyond, end)) = places.iter().zip(&ends).nth(inside.len() + 1) {
         let message = format!(
-            "`{key}`: a piece begins beyond the end of the beam, which is {length} m long, and ends at {} m",
-            beyond.get().si
+            "`{key}`: a piece begins beyond the end of the beam, which is {length} m long, and ends at {end} m"
         );
         return Err(Fault::new(beyond.span(), message).help("leave it and its value out"));
     }
@@ -240,12 +226,14 @@ fn pieces(
     Ok(Along::Pieces { until: inside, value: values })
 }
 
-fn rising(places: &[Located<Quantity<Length>>], key: &str) -> Result<(), Fault> {
-    match places.windows(2).find(|pair| pair[1].get().si <= pair[0].get().si) {
-        None => Ok(()),
-        Some(pair) => Err(Fault::new(
-            pair[1].span(),
-            format!("`{key}`: arc lengths must rise; {} m follows {} m", pair[1].get().si, pair[0].get().si),
+/// The arc lengths of `places` on a beam of the given length \[m\], which must rise.
+fn rising(places: &[Located<At>], key: &str, length: f64) -> Result<Vec<f64>, Fault> {
+    let s: Vec<f64> = places.iter().map(|place| place.get().on(length)).collect();
+    match (1..s.len()).find(|k| s[*k] <= s[*k - 1]) {
+        None => Ok(s),
+        Some(k) => Err(Fault::new(
+            places[k].span(),
+            format!("`{key}`: arc lengths must rise; {} m follows {} m", s[k], s[k - 1]),
         )
         .help("for a jump use `pieces`")),
     }

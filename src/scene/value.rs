@@ -164,6 +164,19 @@ pub enum At {
 impl At {
     const EXPECTED: &'static str =
         "\"start\", \"end\" or an arc length from the start: a number in m, or text such as \"45 cm\"";
+    /// Distance from an end, in lengths of the beam, that counts as round-off.
+    pub(super) const ROUND_OFF: f64 = 1e-9;
+
+    /// The arc length \[m\] on a beam of the given `length`. An end typed with fewer digits than the length has is meant as the end.
+    pub(super) fn on(self, length: f64) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::End => length,
+            Self::ArcLength(s) => {
+                [0.0, length].into_iter().find(|end| (s - end).abs() <= Self::ROUND_OFF * length).unwrap_or(s)
+            }
+        }
+    }
 }
 
 impl<'de> Deserialize<'de> for At {

@@ -19,6 +19,8 @@ pub type LoadSample = (f64, [f64; 2]);
 const SUDDEN: f64 = 8.0;
 /// Steps into which a sudden change is divided.
 const PIECES: usize = 16;
+/// Where between two times laws are looked at, too.
+const BETWEEN: f64 = 0.382;
 /// Changes of a load, relative to its size, that count as none.
 const NOTHING: f64 = 1e-9;
 
@@ -80,6 +82,29 @@ impl System {
             }
             begins => begins.map(time).into_iter().collect(),
         }
+    }
+
+    /// The first of the rising `times` \[s\] from which on no load, support or tendon changes by its law; `None` where one does to the
+    /// last, or has a formula of place and time.
+    pub fn steady_from(&self, times: &[f64]) -> Option<usize> {
+        if !self.terms.timed_loads.is_empty() {
+            return None;
+        }
+        let steady = |law: &Law| {
+            let looks: Vec<[f64; 2]> = times
+                .windows(2)
+                .map(|pair| {
+                    // Between times that are evenly spread laws are looked at unevenly, so that a period hides in none.
+                    let between = pair[0] + BETWEEN * (pair[1] - pair[0]);
+                    [pair[0], between].map(|time| law.at(time)[0])
+                })
+                .collect();
+            let end = law.at(*times.last()?)[0];
+            let size = looks.iter().flatten().fold(end.abs(), |most, value| most.max(value.abs()));
+            let changes = |look: &[f64; 2]| look.iter().any(|value| (value - end).abs() > NOTHING * size);
+            Some(looks.iter().rposition(changes).map_or(0, |last| last + 1))
+        };
+        self.laws().map(steady).try_fold(0, |latest, from| Some(latest.max(from?)))
     }
 
     /// Whether a load follows a law of time, moves along a beam, or has a formula of time.

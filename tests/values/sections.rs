@@ -29,7 +29,9 @@ fn a_couple_turns_a_tip_by_the_integral_of_its_compliance() {
         ("{ table = { s = [0, 1], value = [2, 1] } }", 2.0_f64.ln(), 1e-7),
         ("{ polynomial = [1, 2, 1] }", 0.5, 5e-7),
         ("{ table = { s = [0, 0.37, 1], value = [2, '1 N m^2', 3] } }", polygon, 3e-5),
+        ("{ table = { s = ['start', 0.37, 'end'], value = [2, 1, 3] } }", polygon, 3e-5),
         ("{ pieces = { until = [0.33, 1], value = [4, '1 N m^2'] } }", 0.0825 + 0.67, 2e-7),
+        ("{ pieces = { until = [0.33, 'end'], value = [4, 1] } }", 0.0825 + 0.67, 2e-7),
         ("{ pieces = { until = ['33 cm'], value = [4, 1] } }", 0.0825 + 0.67, 2e-7),
     ] {
         for basis in ["ancf.elements = 20", "rpim.nodes = 21"] {
@@ -556,6 +558,14 @@ fn impossible_sections_are_refused() {
         (
             "axial_stiffness = 1, bending_stiffness = { table = { s = [0, 1], value = [2, 1, 1] } }",
             "2 places and 3 values",
+        ),
+        (
+            "axial_stiffness = 1, bending_stiffness = { table = { s = ['end', 1], value = [2, 1] } }",
+            "arc lengths must rise; 1 m follows 1 m",
+        ),
+        (
+            "axial_stiffness = 1, bending_stiffness = { pieces = { until = ['start', 1], value = [2, 1] } }",
+            "the first piece has no length",
         ),
         (
             "axial_stiffness = 1, bending_stiffness = { table = { s = [0, 1], value = [2, -1] } }",

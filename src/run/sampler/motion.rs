@@ -9,7 +9,7 @@ use crate::run::balance::too_few_cells;
 use crate::run::laws::Reach;
 use crate::run::locking::unheld;
 use crate::run::tendons::Tendons;
-use crate::run::{steps, strings};
+use crate::run::{phase, steps, strings};
 use crate::solve::dynamics;
 
 /// Energies below this, in EA L, are due to the round-off of strains.
@@ -101,6 +101,12 @@ impl Sampler<'_> {
             let time = solution.states.last().map_or(0.0, |state| state.time);
             let told = too_few_cells(self.model, self.system, (time, &trajectory.last), Some(kinetic));
             trajectory.run.warnings.extend(told);
+            trajectory.run.warnings.extend(phase::late(
+                self.system,
+                settings,
+                &solution.states,
+                solution.statistics.steps,
+            ));
         }
         for &dynamics::ProbeEvent { watch, time, value, rates } in &solution.events {
             let EventCondition { probe, quantity, when, .. } = &settings.events[watch];

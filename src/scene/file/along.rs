@@ -9,8 +9,8 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 
-use crate::scene::quantity::{Any, Length, Measure, Quantity, Range};
-use crate::scene::value::{Located, Vector};
+use crate::scene::quantity::{Any, Measure, Quantity, Range};
+use crate::scene::value::{At, Located, Vector};
 
 /// A quantity of a beam: a number, or a table of how it varies along the arc length.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ pub struct VaryingTable<M, R> {
 #[serde(deny_unknown_fields, bound = "M: Measure, R: Range")]
 pub struct PlacesTable<M, R> {
     /// Arc lengths, rising from the beam's start to its end.
-    pub s: Vec<Located<Quantity<Length>>>,
+    pub s: Vec<Located<At>>,
     /// The value at each.
     pub value: Located<Vec<Quantity<M, R>>>,
 }
@@ -48,7 +48,7 @@ pub struct PlacesTable<M, R> {
 #[serde(deny_unknown_fields, bound = "M: Measure, R: Range")]
 pub struct PiecesTable<M, R> {
     /// Arc lengths at which pieces end, rising; the end of the last one may be left out.
-    pub until: Vec<Located<Quantity<Length>>>,
+    pub until: Vec<Located<At>>,
     /// The value of each piece.
     pub value: Located<Vec<Quantity<M, R>>>,
 }
@@ -108,12 +108,12 @@ impl<M: Measure, R: Range> JsonSchema for AlongBeam<M, R> {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let constant = generator.subschema_for::<Quantity<M, R>>();
         let coefficient = generator.subschema_for::<Quantity<M>>();
-        let place = generator.subschema_for::<Quantity<Length>>();
+        let place = generator.subschema_for::<At>();
         schema(constant, coefficient, place)
     }
 }
 
-/// The schema of a quantity of which those of a value, a coefficient and an arc length are given.
+/// The schema of a quantity of which those of a value, a coefficient and a place are given.
 fn schema(constant: Schema, coefficient: Schema, place: Schema) -> Schema {
     let places = |description: &str| json_schema!({ "type": "array", "items": place.clone(), "description": description });
     let values =
