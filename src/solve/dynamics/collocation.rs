@@ -57,7 +57,7 @@
 //! stages are in equilibrium. The differences are of the order h, so that the change is two orders
 //! smaller than the method's error. No amplitude grows at any frequency: with three stages a
 //! vibration of ω h = 1 loses 2e-8 of it in a step (Radau IIA: 1.3e-4), one of ω h = 30 four
-//! fifths. Linear momentum is kept. K (q₁ − Q_s) is computed as the difference of the forces, and K
+//! fifths. Linear momentum is kept, for which nodes that have turned apart need a new tangent. K (q₁ − Q_s) is computed as the difference of the forces, and K
 //! (v₁ − V_s) as that of their rates, because both must vanish in a rigid rotation. The change of
 //! slow motions counts as an error of the step: the end of a step of a stiff rotating rod lies off
 //! the circle, and drawing it back takes away some angular momentum in every step. With steps of
@@ -107,6 +107,10 @@ const ERROR_OF_DEFECT: f64 = 0.1;
 /// Weight of the errors due to the damping at the ends of steps: they have the same sign in every
 /// step.
 const ERRORS_OF_DAMPING: f64 = 3.0;
+/// A change at the end of a step times the angle by which nodes have turned apart, as a part of the error that the step may make, beyond which the
+/// change is computed with a tangent of its own: one that is turned keeps linear momentum only where all nodes turn alike, and what is
+/// lost adds up to a drift.
+const APART: f64 = 1e-6;
 /// Smallest tolerance of the stages in beam lengths: without it a beam that nothing moves yet would
 /// be solved to the round-off of zero.
 const REST: f64 = 1e-26;
@@ -160,6 +164,16 @@ impl FactoredTangent {
         }
         turns.forth(e);
     }
+}
+
+/// A change of the end of a step, by motions that are too fast for it.
+struct FastChange {
+    /// In fixed axes.
+    of: Vec<f64>,
+    /// As positions \[beam lengths\].
+    size: f64,
+    /// Of that what moves slowly.
+    slow: f64,
 }
 
 /// When the tangent of a step was taken.
@@ -545,7 +559,7 @@ impl<'a> Collocation<'a> {
 
     /// Draws the unknowns `to` at the end of the step towards its last stage, as far as they move
     /// too fast for the step. Returns the error of the position due to the change of slow motions.
-    fn damp(&mut self, from: &State, to: &mut State) -> f64 {
+    fn damp(&mut self, from: &State, to: &mut State, allowed: Allowed) -> Result<f64, Singular> {
         let (n, last, h) = (self.motion.coordinates(), self.tableau.stages() - 1, self.end - from.time);
         let weights =
             |matrix: &DMatrix<f64>, j: usize, h: f64| if j <= last { matrix[(last, j)] / h } else { 0.0 };
@@ -562,21 +576,39 @@ impl<'a> Collocation<'a> {
         let rates = Rates { time: to.time, v: &to.v, a: Acceleration::constant(&self.acceleration) };
         self.motion.residual(&x, rates, &mut position);
         position[n..].fill(0.0);
-        let velocity = self.motion.rate_of_forces(&stage, to);
-        let FactoredTangent { at, .. } = self.kept.as_ref().expect(NOT_FACTORISED);
-        self.turns.measure(&at.q, &to.q);
-        let mut error = 0.0;
-        for (mut change, unknowns, unit) in [(position, &mut to.q, 1.0), (velocity, &mut to.v, h)] {
-            self.solve_turned(Complex::new(1.0, 0.0), &mut change);
-            (0..=last).for_each(|_| self.keep_fast(h, &mut change));
-            let mut slow = self.slow(h, &change);
-            for change in [&mut change, &mut slow] {
+        let forces = [position, self.motion.rate_of_forces(&stage, to)];
+        self.turn_to(to);
+        let mut changes = self.fast_changes(h, &forces);
+        let size: f64 = changes.iter().map(|change| change.size).sum();
+        if size * self.turns.spread() > APART * allowed.step {
+            let rate = self.kept.as_ref().map_or(1.0, |kept| kept.rate);
+            self.linearize(to, self.multipliers(), h)?;
+            self.kept.as_mut().expect(NOT_FACTORISED).rate = rate;
+            self.turn_to(to);
+            changes = self.fast_changes(h, &forces);
+        }
+        let [position, velocity] = &changes;
+        for (unknowns, change) in [(&mut to.q, position), (&mut to.v, velocity)] {
+            unknowns.iter_mut().zip(&change.of).for_each(|(x, change)| *x += change);
+        }
+        Ok(ERRORS_OF_DAMPING * (position.slow + velocity.slow))
+    }
+
+    /// F^{s+1} (γ²/h² M + K)⁻¹ of the forces for the positions and their rates for the velocities.
+    fn fast_changes(&self, h: f64, forces: &[Vec<f64>; 2]) -> [FastChange; 2] {
+        let change = |(forces, unit): (&Vec<f64>, f64)| {
+            let mut of = forces.clone();
+            self.solve_turned(Complex::new(1.0, 0.0), &mut of);
+            (0..self.tableau.stages()).for_each(|_| self.keep_fast(h, &mut of));
+            let mut slow = self.slow(h, &of);
+            for change in [&mut of, &mut slow] {
                 self.motion.from_frames(change);
             }
-            error += unit * self.motion.distance(&slow);
-            unknowns.iter_mut().zip(&change).for_each(|(x, change)| *x += change);
-        }
-        ERRORS_OF_DAMPING * error
+            let [size, slow] = [&of, &slow].map(|change| unit * self.motion.distance(change));
+            FastChange { of, size, slow }
+        };
+        let [position, velocity] = forces;
+        [(position, 1.0), (velocity, h)].map(change)
     }
 
     /// Corrects `to` for the loads that the stages do not see, as far as the motion can follow
@@ -711,8 +743,8 @@ impl Method for Collocation<'_> {
         }
         to.time = self.end;
         let mut unseen = 0.0;
-        if allowed.is_some() && !self.tableau.damps() {
-            unseen += self.damp(from, to);
+        if let Some(allowed) = allowed.filter(|_| !self.tableau.damps()) {
+            unseen += self.damp(from, to, allowed)?;
         }
         if may_not_see_loads(self.control, h) {
             unseen += self.make_up(state, from, to);

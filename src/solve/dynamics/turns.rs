@@ -139,6 +139,22 @@ impl Turns {
         &self.turns
     }
 
+    /// The sine of the largest angle by which the turn of a node differs from the mean one of all nodes. Only where it is zero does
+    /// R K Rᵀ keep what K keeps of a translation.
+    pub fn spread(&self) -> f64 {
+        let mean =
+            self.turns.iter().chain(&self.pairs.turns).fold(Turn { cosine: 0.0, sine: 0.0 }, |mean, turn| {
+                Turn { cosine: mean.cosine + turn.cosine, sine: mean.sine + turn.sine }
+            });
+        let size = mean.cosine.hypot(mean.sine);
+        let off = |turn: &Turn<f64>| (turn.sine * mean.cosine - turn.cosine * mean.sine).abs() / size;
+        // A node whose pair of positions turns by itself does so in place of the node as a whole.
+        let by_itself = |node: &usize| self.pairs.pairs.iter().any(|[_, first]| first / 4 == *node);
+        let whole = (0..self.turns.len()).filter(|node| !self.still.contains(node) || !by_itself(node));
+        let turns = whole.map(|node| &self.turns[node]).chain(&self.pairs.turns);
+        turns.map(off).fold(0.0, f64::max)
+    }
+
     /// The turns beside those of whole nodes.
     pub fn of_pairs(&self) -> &PairTurns<f64> {
         &self.pairs
@@ -154,5 +170,28 @@ impl Turns {
     pub fn back(&self, v: &mut [f64]) {
         self.pairs.back(v);
         self.turns.iter().zip(v.as_chunks_mut::<4>().0).for_each(|(turn, v)| turn.back(v));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three nodes turn by 0.1, 0.2 and 0.3 rad, or the last one stays; all alike have no spread.
+    #[test]
+    fn nodes_that_turn_apart_are_told() {
+        let state = |angles: [f64; 3]| {
+            angles.iter().enumerate().flat_map(|(k, a)| [k as f64, 0.0, a.cos(), a.sin()]).collect::<Vec<_>>()
+        };
+        let spread = |angles, still: Vec<usize>| {
+            let mut turns = Turns::new(3, still, PairTurns::new(Vec::new()));
+            turns.measure(&state([0.0; 3]), &state(angles));
+            turns.spread()
+        };
+        assert!((spread([0.1, 0.2, 0.3], vec![]) - 0.1_f64.sin()).abs() < 1e-12);
+        assert!(spread([0.7; 3], vec![]) < 1e-12);
+        // Two directions of 0.6 rad and one of 0: the mean has the angle atan(2 sin 0.6/(2 cos 0.6 + 1)).
+        let mean = (2.0 * 0.6_f64.sin()).atan2(2.0 * 0.6_f64.cos() + 1.0);
+        assert!((spread([0.6; 3], vec![2]) - mean.sin()).abs() < 1e-12);
     }
 }
