@@ -174,13 +174,18 @@ pub(super) fn too_few_cells(
     kinetic: Option<f64>,
 ) -> Vec<String> {
     let told = |(index, (beam, shape)): (usize, (&Beam, &Shape))| {
-        let basis = &system.beams().get(index)?.basis;
+        let part = system.beams().get(index)?;
+        let basis = &part.basis;
         let is_damped = model.parts.iter().any(|part| {
             let damping = (part.as_ref() as &dyn Any).downcast_ref::<BeamDamping>();
             damping.is_some_and(|of| of.beam == index && (of.strain.is_some() || of.curvature.is_some()))
         });
         // With less than one place in a cell, what it is off is not seen.
         if kinetic.is_some() && is_damped || shape.s.len() < basis.nodes().len() {
+            return None;
+        }
+        // Any cells will do for what is straight, and stays so.
+        if part.straight && shape.curvature.iter().all(|k| k.abs() * basis.length() <= SLIGHT) {
             return None;
         }
         let stress_free = StressFree::of(model, system, (index, shape), parameter)?;

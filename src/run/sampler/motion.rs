@@ -101,12 +101,11 @@ impl Sampler<'_> {
             let time = solution.states.last().map_or(0.0, |state| state.time);
             let told = too_few_cells(self.model, self.system, (time, &trajectory.last), Some(kinetic));
             trajectory.run.warnings.extend(told);
-            trajectory.run.warnings.extend(phase::late(
-                self.system,
-                settings,
-                &solution.states,
-                solution.statistics.steps,
-            ));
+            // What hits something moves on at its own times.
+            if solution.contacts.is_empty() {
+                let (states, steps) = (&solution.states, solution.statistics.steps);
+                trajectory.run.warnings.extend(phase::late(self.system, settings, states, steps));
+            }
         }
         for &dynamics::ProbeEvent { watch, time, value, rates } in &solution.events {
             let EventCondition { probe, quantity, when, .. } = &settings.events[watch];
