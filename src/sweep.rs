@@ -290,6 +290,8 @@ pub struct Merged {
     pub runs: usize,
     /// The numbers of those that failed or were refused.
     pub unsolved: Vec<usize>,
+    /// The numbers of those that were solved with warnings.
+    pub warned: Vec<usize>,
 }
 
 /// Joins the journals in `directory` to one table, `sweep.csv` there.
@@ -313,12 +315,17 @@ pub fn merge(directory: &Path) -> Result<Merged, SweepError> {
             missing: numbers(&missing),
         });
     }
-    let (mut columns, mut unsolved) = (Columns::default(), Vec::new());
+    let (mut columns, mut unsolved, mut warned) = (Columns::default(), Vec::new(), Vec::new());
     finished.each(
-        |record| (table::names(&record), (record.outcome != Outcome::Solved).then_some(record.run)),
-        |(names, failed)| {
+        |record| (table::names(&record), record.outcome, record.run),
+        |(names, outcome, run)| {
             columns.add(&names);
-            unsolved.extend(failed);
+            let warns = names.iter().any(|name| name.split('.').any(|key| key == "warnings"));
+            match outcome {
+                Outcome::Solved if warns => warned.push(run),
+                Outcome::Solved => {}
+                _ => unsolved.push(run),
+            }
             Ok(())
         },
     )?;
@@ -332,7 +339,7 @@ pub fn merge(directory: &Path) -> Result<Merged, SweepError> {
         writer.flush()
     })?;
     stage.commit()?;
-    Ok(Merged { table, runs: grid.runs(), unsolved })
+    Ok(Merged { table, runs: grid.runs(), unsolved, warned })
 }
 
 /// Ascending numbers as people write them: `1–4, 7, 9`; only the first of very many.

@@ -106,6 +106,14 @@ fn merge(directory: &Path, quiet: bool) -> Result<(), Failure> {
             sweep::numbers(&merged.unsolved)
         ));
     }
+    if !merged.warned.is_empty() {
+        terminal::note(&format!(
+            "warning: {} of {} runs have warnings (see the columns `warnings.…`): {}",
+            merged.warned.len(),
+            merged.runs,
+            sweep::numbers(&merged.warned)
+        ));
+    }
     if !quiet {
         terminal::note(&format!("{} runs: {}", merged.runs, merged.table.display()));
     }

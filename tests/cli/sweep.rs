@@ -206,6 +206,31 @@ fn what_cannot_be_built_is_a_row_too() {
     assert!(stderr(&output).contains("1 of 2 runs were not solved"), "{}", stderr(&output));
 }
 
+/// A cantilever rolled up into a circle, by cells that turn by 120° each and by ones that follow: the first run has a warning, which the end of
+/// the sweep tells.
+#[test]
+fn runs_with_warnings_are_told() {
+    let arm = "beam.arm = { start = [0, 0], end = [1, 0], axial_stiffness = 1e5, bending_stiffness = 1, basis.ancf.elements = 1 }\n\
+               support = [{ beam = 'arm', at = 'start', fix = ['x', 'y', 'angle'] }]\n\
+               effect.moment = [{ beam = 'arm', at = 'end', value = 6.28 }]\nanalysis.static = {}\n";
+    let folder = folder(arm);
+    let vary = "beam.arm.basis.ancf.elements=3,12,20";
+    let output = ancf(folder.path(), &["sweep", "scene.toml", "--vary", vary, "-o", "out", "--quiet"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    assert_eq!(
+        stderr(&output).trim(),
+        "warning: 1 of 3 runs have warnings (see the columns `warnings.…`): 1",
+        "{}",
+        stderr(&output)
+    );
+    let table = Table::read(&folder.path().join("out/sweep.csv"));
+    let told = table.column("warnings.1");
+    assert!(
+        told[0].contains("its cells are too few") && told[1].is_empty() && told[2].is_empty(),
+        "{told:?}"
+    );
+}
+
 #[test]
 fn eigenvalues_are_columns() {
     let folder = folder(include_str!("../scenes/modal.toml"));

@@ -38,6 +38,8 @@ class SweepTable:
     """The table, `sweep.csv`, as `ancf sweep` writes it."""
     unsolved: list[int]
     """The numbers of the runs that failed or were refused, from 1."""
+    warned: list[int]
+    """The numbers of those that were solved with warnings."""
 
     def rows(self) -> list[dict[str, str]]:
         """The rows, as the table says them."""
@@ -85,10 +87,10 @@ def sweep(
             task = _Task(scene.text, scene.name, axes)
             pool, workers = _pool(executor)
             _feed(pool, workers, task, left, journal, on_row)
-        path, unsolved = journal.merge()
+        path, unsolved, warned = journal.merge()
     finally:
         journal.close()
-    return SweepTable(Path(path), unsolved)
+    return SweepTable(Path(path), unsolved, warned)
 
 
 @dataclass(frozen=True)

@@ -97,10 +97,10 @@ impl Journal {
         *self.recorder.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 
-    /// Writes the table of a complete sweep: its path, and the runs that were not solved.
-    fn merge(&self, py: Python<'_>) -> PyResult<(PathBuf, Vec<usize>)> {
+    /// Writes the table of a complete sweep: its path, and the runs that were not solved, and those with warnings.
+    fn merge(&self, py: Python<'_>) -> PyResult<(PathBuf, Vec<usize>, Vec<usize>)> {
         let merged =
             py.detach(|| sweep::merge(&self.directory)).map_err(|error| errors::of_sweep(py, &error))?;
-        Ok((merged.table, merged.unsolved))
+        Ok((merged.table, merged.unsolved, merged.warned))
     }
 }

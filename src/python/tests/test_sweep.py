@@ -39,7 +39,7 @@ def test_the_table_is_that_of_the_command_line(cantilever: ancf.Scene, tmp_path:
     # The command line lets lists change slowest.
     values = dict(reversed(VALUES.items()))
     swept = ancf.sweep(ancf.Scene.load(scene), values, directory=tmp_path / "python")
-    assert swept.path == tmp_path / "python/sweep.csv" and swept.unsolved == []
+    assert swept.path == tmp_path / "python/sweep.csv" and swept.unsolved == swept.warned == []
     assert table(swept.path) == table(tmp_path / "cli/sweep.csv") and len(swept.rows()) == 6
 
 
