@@ -147,7 +147,8 @@ mod tests {
         let places = [0.0, 0.5, 1.0];
         let half = Along::Constant(4.0).within([0.0, 0.5]);
         // ∫ ℓ₁ ds over the first half is 5/24 of 1/6, beyond the bound; over the second −1/24.
-        assert_eq!(rule.values(&half, &places, 1.0), [4.0, 2.0, 0.0]);
+        let found = rule.values(&half, &places, 1.0);
+        assert!((found[0], found[2]) == (4.0, 0.0) && (found[1] - 2.0).abs() < 1e-14, "{found:?}");
         let peak = Along::Table { s: vec![0.0, 0.2, 0.25, 0.3, 1.0], value: vec![0.0, 0.0, 8.0, 0.0, 0.0] };
         let found = rule.values(&peak, &places, 1.0);
         // ½ · 8 · 0.1 = 0.4, of which the three points have ℓᵢ(1/4) = 3/8, 3/4 and −1/8 nearly: none is negative.
