@@ -172,9 +172,9 @@ impl At {
         match self {
             Self::Start => 0.0,
             Self::End => length,
-            Self::ArcLength(s) => {
-                [0.0, length].into_iter().find(|end| (s - end).abs() <= Self::ROUND_OFF * length).unwrap_or(s)
-            }
+            Self::ArcLength(s) if (0.0..=Self::ROUND_OFF * length).contains(&s) => 0.0,
+            Self::ArcLength(s) if (s - length).abs() <= Self::ROUND_OFF * length => length,
+            Self::ArcLength(s) => s,
         }
     }
 }

@@ -137,6 +137,14 @@ impl Supports {
         self.pairs.iter().filter(half).map(|restrained| restrained.pair / 2)
     }
 
+    /// Whether the position of a node is fixed in both directions.
+    pub fn pin(&self) -> bool {
+        let pins = |restrained: &RestrainedPair| {
+            matches!(restrained.restraint, Restraint::Position(_)) && restrained.frame(0.0).1 == [true; 2]
+        };
+        self.pairs.iter().any(pins)
+    }
+
     /// Nodes at which one or both components of the position are fixed.
     pub fn positions(&self) -> impl Iterator<Item = usize> + '_ {
         self.pairs

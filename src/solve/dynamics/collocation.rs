@@ -171,6 +171,8 @@ pub struct Collocation<'a> {
     last_step: f64,
     /// Whether the iteration of the last attempt diverged.
     astray: bool,
+    /// Whether something may move on as a whole: what is not one beam with a pin.
+    drifts: bool,
     trial_step: f64,
     /// When the last attempt ends; loads and supports are evaluated no later.
     end: f64,
@@ -194,6 +196,7 @@ impl<'a> Collocation<'a> {
             multipliers: vec![Lanes::ZERO; unknowns - n],
             last_step: 0.0,
             astray: false,
+            drifts: motion.system().beams().len() > 1 || !motion.system().supports().pin(),
             trial_step: 0.0,
             end: 0.0,
             kept: None,

@@ -32,9 +32,9 @@ use nalgebra::{Complex, DMatrix};
 /// Weight of the errors due to the damping at the ends of steps: they have the same sign in every
 /// step.
 const ERRORS_OF_DAMPING: f64 = 3.0;
-/// A change at the end of a step times the angle by which nodes have turned apart, as a part of the error that the step may make, beyond which the
-/// change is computed with a tangent of its own: one that is turned keeps linear momentum only where all nodes turn alike, and what is
-/// lost adds up to a drift.
+/// A change at the end of a step times the angle by which nodes have turned apart, as a part of the error that the step may make, beyond which what
+/// may drift has the change computed with a tangent of its own: one that is turned keeps linear momentum only where all nodes turn alike, and what is
+/// lost in every step adds up.
 const APART: f64 = 1e-6;
 
 /// A change of the end of a step, by motions that are too fast for it.
@@ -86,7 +86,7 @@ impl Collocation<'_> {
         self.turn_to(to);
         let mut changes = self.fast_changes(h, &forces);
         let size: f64 = changes.iter().map(|change| change.size).sum();
-        if size * self.turns.spread() > APART * allowed.step {
+        if self.drifts && size * self.turns.spread() > APART * allowed.step {
             let rate = self.kept.as_ref().map_or(1.0, |kept| kept.rate);
             self.linearize(to, self.multipliers(), h)?;
             self.kept.as_mut().expect(NOT_FACTORISED).rate = rate;
