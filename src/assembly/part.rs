@@ -130,8 +130,8 @@ pub enum Extent {
     /// Over a whole beam, times a factor that varies along it; where the factor is not smooth,
     /// cells are divided.
     Weighted(usize, Quadrature, Arc<Along>),
-    /// Over a whole beam, times a factor that varies along it, at no more points than the rule has in a
-    /// cell ([`ProductRule`]).
+    /// Over a whole beam, times a factor f that varies along it, by product integration: at the points of the
+    /// rule alone, where f is not smooth with 1/wᵢ ∫ ℓᵢ f ds in place of f, ℓᵢ being Lagrange's polynomials.
     Whole(usize, Quadrature, Arc<Along>),
     /// At one point, with weight 1.
     Point(Place),

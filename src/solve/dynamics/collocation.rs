@@ -43,7 +43,7 @@
 //! a tenth of the iterations in pendulums but cost half as many again in small damped vibrations.
 //!
 //! # Gauss' methods with a tolerance
-//! The ends of their steps are damped ([`damping`]).
+//! The ends of their steps are damped; how and why stands in `collocation/damping.rs`.
 //!
 //! # Error of a step
 //! The polynomial of the stage accelerations is compared with the acceleration at the start, where
