@@ -61,12 +61,10 @@ impl ProductRule {
     pub fn values(&self, of: &Along, places: &[f64], length: f64) -> Vec<f64> {
         let first = places.first().copied().unwrap_or(0.0);
         let cell = Cell { start: first - self.points[0] * length, length, places };
-        let composed = cell.inside(of.kinks()).is_empty();
-        let value = |point: usize| match composed {
-            true => of.at(places[point], cell.middle()),
-            false => self.value(of, &cell, point),
-        };
-        (0..places.len()).map(value).collect()
+        if cell.inside(of.kinks()).is_empty() {
+            return places.iter().map(|s| of.at(*s, cell.middle())).collect();
+        }
+        (0..places.len()).map(|point| self.value(of, &cell, point)).collect()
     }
 
     fn value(&self, of: &Along, cell: &Cell<'_>, point: usize) -> f64 {

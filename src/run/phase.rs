@@ -91,17 +91,17 @@ pub(super) fn late(system: &System, settings: &Dynamic, states: &[State], steps:
     let Oscillation { frequency, lasts, size } = Oscillation::of(system, free)?;
     let step = step.min((last.time - first.time) / steps.max(1) as f64);
     let (coefficient, power) = slowness(settings.integrator);
-    // What is out of all step is as far off as two states of which neither knows of the other.
     let slow = (coefficient * (frequency * step).powi(power)).min(1.0);
     let late = slow * frequency * lasts;
+    // From a quarter of a swing on, a state is as far off as one that is taken at random.
+    let off = size * (2.0 * (0.5 * late.min(PI)).sin()).min(SQRT_2);
     (late > TOLERATED).then(|| {
         format!(
             "vibrations of {} Hz, which most of the motion consists of, run {slow:.1e} of themselves too slow in steps of {step:.1e} s, and are late by \
-             about {} cycles after {} s: positions at a time are off by about {:.1e} m (root mean square); use steps below {:.1e} s, or a `tolerance`",
+             about {} cycles after {} s: positions at a time are off by about {off:.1e} m (root mean square); use steps below {:.1e} s, or a `tolerance`",
             plain(frequency / TAU, 3),
             plain(late / TAU, 2),
             plain(lasts, 3),
-            size * (2.0 * (0.5 * late.min(PI)).sin()).min(SQRT_2),
             step * (GOOD / late).powf(1.0 / f64::from(power))
         )
     })
